@@ -1,0 +1,1 @@
+"""What an observer runs: receivers, the navigator and their agent."""

@@ -1,0 +1,93 @@
+"""The paper's receiver: images and timestamps in, events out."""
+
+import dataclasses
+
+import numpy as np
+
+from waggle_tasks.agents import config as config_lib
+from waggle_tasks.agents import klt, recogniser, segmenter, stillness
+from waggle_tasks.protocol import frame, gestures, payload
+from waggle_tasks.protocol.symbols import Symbol
+
+
+@dataclasses.dataclass(frozen=True)
+class Event:
+  """Something that a receiver saw.
+
+  Attributes:
+    time_s: When it was confirmed.
+    symbol: NULL, a motion symbol, or UNKNOWN.
+    state: What the frame parser waits for after it.
+    recognition: The scores of a motion; None for NULL.
+    message: The payload, when the event completes a frame.
+    rejection: Why the event broke a frame, when it did.
+  """
+
+  time_s: float
+  symbol: Symbol
+  state: frame.State
+  recognition: recogniser.Recognition | None = None
+  message: payload.Payload | None = None
+  rejection: str | None = None
+
+
+class KltReceiver:
+  """Tracks, segments, recognises, confirms nulls and parses frames."""
+
+  def __init__(
+    self,
+    codebook: gestures.Codebook,
+    config: config_lib.Config = config_lib.Config(),
+  ) -> None:
+    """Makes a receiver at the beginning of an episode.
+
+    Args:
+      codebook: The agreed gestures.
+      config: The receiver's numbers.
+    """
+    tracking = config.tracking
+    self._tracker = klt.KltTracker(tracking)
+    self._segmenter = segmenter.Segmenter(config.motion, tracking)
+    self._recogniser = recogniser.Recogniser(codebook, config.recognition)
+    self._stillness = stillness.StillnessDetector(
+      config.stillness, tracking.max_gap_s
+    )
+    self._parser = frame.Parser()
+    self.track: klt.Track | None = None
+
+  def step(self, image: np.ndarray, time_s: float) -> tuple[Event, ...]:
+    """Takes one image, which is all that the receiver ever gets.
+
+    Args:
+      image: (H, W, 3) uint8 RGB.
+      time_s: Its time in seconds.
+
+    Returns:
+      The events that this image confirms; mostly none.
+    """
+    self.track = self._tracker.step(image, time_s)
+    segment = self._segmenter.step(self.track)
+    events = []
+    if segment is not None:
+      recognition = self._recogniser.recognise(segment)
+      events.append(self._event(time_s, recognition.symbol, recognition))
+    moving = self._segmenter.active
+    if self._stillness.step(self.track, self._tracker.anchor_px, moving):
+      events.append(self._event(time_s, Symbol.NULL, None))
+    return tuple(events)
+
+  def _event(
+    self,
+    time_s: float,
+    symbol: Symbol,
+    recognition: recogniser.Recognition | None,
+  ) -> Event:
+    self._parser, outcome = self._parser.step(symbol)
+    message = rejection = None
+    if isinstance(outcome, frame.Message):
+      message = outcome.payload
+    elif isinstance(outcome, frame.Rejection):
+      rejection = outcome.reason
+    return Event(
+      time_s, symbol, self._parser.state, recognition, message, rejection
+    )

@@ -1,0 +1,1 @@
+"""The flight room, its views, and the layouts observers stand in."""

@@ -1,0 +1,1 @@
+"""The vehicles: the Crazyflie, the performer and the observers."""

@@ -1,0 +1,121 @@
+"""An ideal six-degree-of-freedom controller that runs inside MuJoCo's step.
+
+Forces and torques act on the centre of mass and feed the true state back
+(paper, section 'Per-observer navigation'). Each is a MuJoCo actuator on the
+vehicle's site with a law of the form k (c - x) - d x', so that a control step
+sets six numbers and no Python runs between two physics steps
+(https://mujoco.readthedocs.io/en/stable/XMLreference.html#actuator-general).
+"""
+
+import math
+
+from dm_control import mjcf
+import numpy as np
+
+from waggle_tasks.entities import crazyflie
+
+# Bandwidths of the critically damped loops; the vehicle's own attitude loop
+# was identified at 15.7 rad/s, and position is a third slower here.
+_POSITION_RAD_S = 10.0
+_ATTITUDE_RAD_S = 25.0
+# Menagerie's thrust range; sideways, the force of the stock firmware's 20
+# degree tilt limit (3.57 m/s^2).
+_THRUST_N = (0.0, 0.35)
+_SIDEWAYS_N = (-0.0964, 0.0964)
+_TORQUE_NM = (-5e-3, 5e-3)
+_GRAVITY_MPS2 = 9.81
+
+_STIFFNESS_N_M = crazyflie.MASS_KG * _POSITION_RAD_S**2
+_DAMPING_NS_M = 2 * crazyflie.MASS_KG * _POSITION_RAD_S
+
+
+class Controller:
+  """Flies one vehicle along a reference."""
+
+  def __init__(
+    self,
+    root: mjcf.RootElement,
+    vehicle: crazyflie.Crazyflie,
+    yaw_rad: float,
+  ) -> None:
+    """Adds the vehicle's actuators to the arena's model.
+
+    Args:
+      root: The model that the vehicle is attached to.
+      vehicle: The attached vehicle.
+      yaw_rad: The heading around which yaw is controlled, within pi.
+    """
+    self._home_yaw_rad = yaw_rad
+    half_rad = yaw_rad / 2
+    name = vehicle.mjcf_model.model
+    home = root.worldbody.add(
+      'site', name=f'{name}_heading', group=3,
+      quat=(math.cos(half_rad), 0, 0, math.sin(half_rad)),
+    )  # fmt: skip
+    world = root.find('site', 'world') or root.worldbody.add(
+      'site', name='world', group=3
+    )
+    self._actuators = []
+    forces = (_SIDEWAYS_N, _SIDEWAYS_N, _THRUST_N)
+    for axis, limits in enumerate(forces):
+      self._add(
+        root, vehicle, world, f'{name}_force_{"xyz"[axis]}', axis,
+        _STIFFNESS_N_M, _DAMPING_NS_M, limits,
+      )  # fmt: skip
+    for axis, inertia in enumerate(crazyflie.INERTIA_KG_M2):
+      self._add(
+        root, vehicle, home, f'{name}_torque_{"xyz"[axis]}', axis + 3,
+        inertia * _ATTITUDE_RAD_S**2, 2 * inertia * _ATTITUDE_RAD_S,
+        _TORQUE_NM,
+      )  # fmt: skip
+
+  def _add(
+    self,
+    root: mjcf.RootElement,
+    vehicle: crazyflie.Crazyflie,
+    frame: mjcf.Element,
+    name: str,
+    axis: int,
+    stiffness: float,
+    damping: float,
+    limits: tuple[float, float],
+  ) -> None:
+    gear = np.zeros(6)
+    gear[axis] = 1.0
+    self._actuators.append(
+      root.actuator.add(
+        'general', name=name, site=vehicle.centre, refsite=frame, gear=gear,
+        gainprm=[stiffness], biastype='affine',
+        biasprm=[0, -stiffness, -damping], forcelimited=True,
+        forcerange=limits,
+      )  # fmt: skip
+    )
+
+  def command(
+    self,
+    physics: mjcf.Physics,
+    position_m: np.ndarray,  # (3,)
+    velocity_mps: np.ndarray,  # (3,)
+    acceleration_mps2: np.ndarray,  # (3,)
+    yaw_rad: float,
+  ) -> None:
+    """Sets the reference for the coming control step.
+
+    The feedforward of velocity, acceleration and weight is folded into the
+    position that the actuators pull towards.
+
+    Args:
+      physics: The compiled model.
+      position_m: World position.
+      velocity_mps: World velocity.
+      acceleration_mps2: World acceleration.
+      yaw_rad: Heading, any number of turns.
+    """
+    force_n = crazyflie.MASS_KG * acceleration_mps2
+    force_n[2] += crazyflie.MASS_KG * _GRAVITY_MPS2
+    pull_m = (
+      position_m
+      + (_DAMPING_NS_M * velocity_mps + force_n) / _STIFFNESS_N_M
+    )
+    turn_rad = math.remainder(yaw_rad - self._home_yaw_rad, math.tau)
+    physics.bind(self._actuators).ctrl = [*pull_m, 0.0, 0.0, turn_rad]

@@ -1,0 +1,120 @@
+"""The observer's camera as a composer observable, and what can spoil it."""
+
+from collections.abc import Callable
+import weakref
+
+from dm_control import mjcf
+from dm_control.composer.observation import observable
+from dm_env import specs
+import numpy as np
+
+from waggle_tasks.entities import renderer
+
+FOVY_DEG = 60.0  # Paper, section 'Scene, sensors, and information boundaries'.
+# Ahead of the centre of mass, clear of the airframe.
+OFFSET_M = 0.03
+
+Corruptor = Callable[[np.ndarray, np.random.RandomState], np.ndarray]
+
+# One renderer, and so one scene and set of buffers, for each live Physics.
+_RENDERERS: weakref.WeakKeyDictionary = weakref.WeakKeyDictionary()
+
+
+def _renderer(physics: mjcf.Physics) -> renderer.Renderer:
+  # Composer hands over a weak proxy; the model is the same for all of them.
+  key = physics.model
+  if key not in _RENDERERS:
+    _RENDERERS[key] = renderer.Renderer(physics)
+  return _RENDERERS[key]
+
+
+class EyeCamera(observable.Observable):
+  """Images of one camera, (480, 640, 3) uint8 RGB."""
+
+  def __init__(
+    self,
+    camera: mjcf.Element,
+    incremental: bool = True,
+    corruptor: Corruptor | None = None,
+  ) -> None:
+    """Makes the observable.
+
+    Args:
+      camera: The MJCF camera.
+      incremental: Whether to redraw only what changed.
+      corruptor: Takes a copy of each image and the environment's random
+        state, and returns what the observer gets instead; may be set anew
+        before each reset.
+    """
+    super().__init__(
+      update_interval=1,
+      buffer_size=1,
+      delay=None,
+      aggregator=None,
+      corruptor=corruptor,
+    )
+    self._camera = camera
+    self._incremental = incremental
+
+  @property
+  def array_spec(self) -> specs.BoundedArray:
+    """The image's shape, type and range."""
+    shape = (renderer.HEIGHT, renderer.WIDTH, 3)
+    return specs.BoundedArray(shape, np.uint8, 0, 255, self._camera.name)
+
+  def _callable(self, physics: mjcf.Physics) -> Callable[[], np.ndarray]:
+    eyes = _renderer(physics)
+    camera_id = physics.bind(self._camera).element_id
+    # The corruptor may write to what it gets; the picture is kept for later.
+    if self.corruptor:
+      return lambda: eyes.image(camera_id, self._incremental).copy()
+    return lambda: eyes.image(camera_id, self._incremental)
+
+
+def black(
+  image: np.ndarray,  # (480, 640, 3) uint8
+  random_state: np.random.RandomState,
+) -> np.ndarray:
+  """A camera that delivers only black images (paper, section 'Controls')."""
+  del random_state
+  image[:] = 0
+  return image
+
+
+class GaussianNoise:
+  """Independent noise on every value of every image."""
+
+  def __init__(self, sigma: float) -> None:
+    """Makes the corruptor.
+
+    Args:
+      sigma: Standard deviation in grey levels, 0 to 128.
+    """
+    self._sigma = sigma
+
+  def __call__(
+    self,
+    image: np.ndarray,  # (480, 640, 3) uint8
+    random_state: np.random.RandomState,
+  ) -> np.ndarray:
+    """Adds noise, rounded and clipped to 0 to 255."""
+    noise = random_state.normal(0.0, self._sigma, image.shape)
+    return np.clip(np.rint(image + noise), 0, 255).astype(np.uint8)
+
+
+class FrozenFrame:
+  """A camera that repeats the image it took first in an episode."""
+
+  def __init__(self) -> None:
+    self._first: np.ndarray | None = None
+
+  def __call__(
+    self,
+    image: np.ndarray,  # (480, 640, 3) uint8
+    random_state: np.random.RandomState,
+  ) -> np.ndarray:
+    """Returns the first image."""
+    del random_state
+    if self._first is None:
+      self._first = image
+    return self._first.copy()

@@ -1,0 +1,123 @@
+"""How every launcher runs: its flags, its help, its errors, its exit status.
+
+A launcher is a module with a docstring, absl flags and `main(argv)`. It calls
+`sys.exit(launch.run(__name__))` when run with `python -m`, and the `waggle`
+command runs it the same way. What needs GL is imported inside `main`, so that
+help works, and a machine that cannot render is told so in one line.
+
+Exit status: what `main` returns (None is 0), 2 on bad input, 130 on Ctrl-C.
+"""
+
+from collections.abc import Sequence
+import difflib
+import importlib
+import pathlib
+import sys
+import textwrap
+import types
+
+from absl import flags
+
+from waggle_tasks import errors, runtime
+from waggle_tasks.experiments import gl
+
+BAD_INPUT = 2
+INTERRUPTED = 130
+
+_COLUMN = 28  # Where the text about a flag starts.
+_WIDTH = 80
+
+# Flags defined through this module belong to the launcher that asked for them.
+flags.disclaim_key_flags()
+
+
+def define_positive_float(
+  name: str, default: float, text: str
+) -> flags.FlagHolder[float]:
+  """Defines a flag that takes a positive, finite number."""
+  holder = flags.DEFINE_float(name, default, f'{text} Positive.')
+  flags.register_validator(
+    holder, lambda value: 0 < value < float('inf'), 'must be positive, finite'
+  )
+  return holder
+
+
+def run(
+  name: str, argv: Sequence[str] | None = None, *, check_versions: bool = True
+) -> int:
+  """Runs a launcher and returns its exit status.
+
+  Args:
+    name: Its module; a launcher that runs itself gives its own `__name__`.
+    argv: Its name or path, then its arguments; `sys.argv` when None.
+    check_versions: Whether to refuse versions that cannot run together.
+  """
+  argv = list(sys.argv if argv is None else argv)
+  program = f'waggle {pathlib.PurePath(argv[0]).stem}'
+  try:
+    if check_versions:
+      runtime.require_versions()
+    module = importlib.import_module(name)
+    if {'--help', '-h'} & set(argv[1:]):
+      print(help_text(program, module))
+      return 0
+    return module.main(_parse(argv, module)) or 0
+  except (errors.WaggleError, flags.Error, runtime.VersionError) as error:
+    line, status = str(error), BAD_INPUT
+  except KeyboardInterrupt:
+    line, status = 'interrupted', INTERRUPTED
+  except Exception:
+    # A failing GL stack raises anything, anywhere: ask whether it was that.
+    line, status = gl.problem(), BAD_INPUT
+    if line is None:
+      raise
+  print(f'{program}: {line}', file=sys.stderr)
+  return status
+
+
+def did_you_mean(word: str, choices: Sequence[str]) -> str:
+  """Returns a question that lists the choices close to a word, or nothing."""
+  close = difflib.get_close_matches(word, choices)
+  return f' Did you mean {" or ".join(close)}?' if close else ''
+
+
+def help_text(program: str, module: types.ModuleType) -> str:
+  """Returns a launcher's help: what it does, and its own flags only."""
+  lines = [f'usage: {program} [--flag=value ...]', '', module.__doc__.strip()]
+  lines += ['', 'flags:']
+  for flag in flags.FLAGS.get_key_flags_for_module(module):
+    lines += _flag_lines(flag)
+  return '\n'.join(lines)
+
+
+def _flag_lines(flag: flags.Flag) -> list[str]:
+  if flag.boolean:
+    head = f'--[no]{flag.name}'
+    text = f'{flag.help} (default: {str(flag.default).lower()})'
+  else:
+    default = '' if flag.default is None else flag.default_as_str.strip("'")
+    head = f'--{flag.name}={default}'
+    rule = flag.parser.syntactic_help
+    text = f'{flag.help} ({rule})' if rule else flag.help
+  indent = ' ' * _COLUMN
+  body = textwrap.wrap(
+    text, _WIDTH, initial_indent=indent, subsequent_indent=indent
+  )
+  if len(head) > _COLUMN - 4:
+    return [f'  {head}', *body]
+  return [f'  {head}'.ljust(_COLUMN) + body[0].lstrip(), *body[1:]]
+
+
+def _parse(argv: Sequence[str], module: types.ModuleType) -> list[str]:
+  try:
+    rest = flags.FLAGS(argv)
+  except flags.UnrecognizedFlagError as error:
+    own = flags.FLAGS.get_key_flags_for_module(module)
+    wrong = f'--{error.flagname}'
+    hint = did_you_mean(wrong, [f'--{flag.name}' for flag in own])
+    raise flags.Error(
+      f'unknown flag {wrong}.{hint} --help lists the flags.'
+    ) from None
+  if len(rest) > 1:
+    raise flags.Error(f'takes only flags, --name=value: got {rest[1]!r}.')
+  return rest

@@ -1,0 +1,65 @@
+"""The `waggle` command: picks a launcher and runs it.
+
+Only the chosen launcher is imported: absl flags are global, and two launchers
+may use the same names.
+"""
+
+from collections.abc import Sequence
+import sys
+
+import waggle_tasks
+from waggle_tasks.experiments import launch
+
+# Name of a module in this folder -> what it does, in one line.
+COMMANDS = {
+  'broadcast': 'Fly one dance and let every observer read and follow it.',
+  'doctor': 'Check that this machine can run the tasks, and say what to mend.',
+}
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+  """Runs one `waggle` command line and returns its exit status.
+
+  Args:
+    argv: The program and its arguments; `sys.argv` when None.
+  """
+  arguments = list(sys.argv if argv is None else argv)[1:]
+  name = arguments[0] if arguments else '--help'
+  if name in ('--help', '-h'):
+    print(listing())
+    return 0
+  if name == '--version':
+    print(f'waggle {waggle_tasks.__version__}')
+    return 0
+  if name not in COMMANDS:
+    hint = launch.did_you_mean(name, list(COMMANDS))
+    print(
+      f'waggle: unknown command {name!r}, must be one of '
+      f'{sorted(COMMANDS)}.{hint}',
+      file=sys.stderr,
+    )
+    return launch.BAD_INPUT
+  return launch.run(
+    f'waggle_tasks.experiments.{name}',
+    arguments,
+    check_versions=name != 'doctor',  # Its report must show what fails here.
+  )
+
+
+def listing() -> str:
+  """Returns the list of commands, one line each."""
+  width = max(map(len, COMMANDS)) + 2
+  lines = [f'  {name:{width}}{line}' for name, line in COMMANDS.items()]
+  return '\n'.join(
+    [
+      'usage: waggle COMMAND [--flag=value ...]',
+      '',
+      *lines,
+      '',
+      '`waggle COMMAND --help` shows the flags of a command.',
+    ]
+  )
+
+
+if __name__ == '__main__':
+  sys.exit(main())

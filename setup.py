@@ -1,0 +1,64 @@
+"""Packaging: the top-level folders become one import name, `waggle_tasks`."""
+
+import pathlib
+import re
+
+import setuptools
+
+HERE = pathlib.Path(__file__).parent
+FOLDERS = ('entities', 'arenas', 'agents', 'experiments')
+
+TEST = ('pytest>=8', 'pytest-xdist>=3', 'hypothesis>=6')
+DEV = (*TEST, 'ruff>=0.14', 'build>=1')
+
+
+def version() -> str:
+  """Returns the version without importing the package."""
+  text = (HERE / 'waggle_tasks' / '_version.py').read_text(encoding='utf-8')
+  return re.search(r"^__version__ = '(.+)'$", text, re.MULTILINE).group(1)
+
+
+def packages() -> list[str]:
+  """Returns every package under the one import name."""
+  names = setuptools.find_packages(include=['waggle_tasks', 'waggle_tasks.*'])
+  for folder in FOLDERS:
+    names.append(f'waggle_tasks.{folder}')
+    names += [
+      f'waggle_tasks.{folder}.{name}'
+      for name in setuptools.find_packages(str(HERE / folder))
+    ]
+  return names
+
+
+setuptools.setup(
+  name='waggle-tasks',
+  version=version(),
+  description='A motion-communication task suite for dm_control composer.',
+  author='The waggle_tasks authors',
+  license='Apache-2.0',
+  license_files=['LICENSE'],
+  python_requires='>=3.11,<3.13',
+  packages=packages(),
+  package_dir={
+    'waggle_tasks': 'waggle_tasks',
+    **{f'waggle_tasks.{folder}': folder for folder in FOLDERS},
+  },
+  package_data={'': ['*.xml', '*.json']},
+  install_requires=[
+    'absl-py>=2',
+    'dm-control==1.0.50',
+    'dm-env>=1.6',
+    'mujoco>=3.17,<4',
+    'numpy>=2',
+    'opencv-python-headless>=5,<6',
+    'packaging>=23',
+    'pyopengl>=3.1.4',
+    'scipy>=1.13',
+    'tqdm>=4.60',
+  ],
+  extras_require={'test': TEST, 'dev': DEV},
+  entry_points={
+    'console_scripts': ['waggle = waggle_tasks.experiments.main:main']
+  },
+  zip_safe=False,
+)

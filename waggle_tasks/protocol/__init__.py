@@ -1,0 +1,1 @@
+"""The language that performer and observers agree on: pure, no simulator."""

@@ -1,0 +1,50 @@
+"""What an observer asks its controller for: the action of the tasks."""
+
+import dataclasses
+
+import numpy as np
+
+SIZE = 13
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class Reference:
+  """A moment of a smooth motion and the goal that it leads to.
+
+  Attributes:
+    position_m: (3,) world metres.
+    velocity_mps: (3,) world m/s.
+    acceleration_mps2: (3,) world m/s^2.
+    yaw_rad: Heading of the nose, counterclockwise from world +X.
+    goal_m: (3,) where the motion comes to rest; the position itself when
+      hovering. The safety checks judge the way to it.
+  """
+
+  position_m: np.ndarray
+  velocity_mps: np.ndarray
+  acceleration_mps2: np.ndarray
+  yaw_rad: float
+  goal_m: np.ndarray
+
+  @classmethod
+  def hover(cls, position_m: np.ndarray, yaw_rad: float) -> 'Reference':
+    """Rest at a place, (3,) world metres."""
+    rest = np.zeros(3)
+    return cls(position_m, rest, rest, yaw_rad, position_m)
+
+  @classmethod
+  def from_array(cls, array: np.ndarray) -> 'Reference':
+    """Reads the (13,) array that `to_array` writes."""
+    return cls(array[:3], array[3:6], array[6:9], array[9], array[10:])
+
+  def to_array(self) -> np.ndarray:
+    """(13,) position, velocity, acceleration, yaw, goal: an action."""
+    return np.concatenate(
+      [
+        self.position_m,
+        self.velocity_mps,
+        self.acceleration_mps2,
+        [self.yaw_rad],
+        self.goal_m,
+      ]
+    )

@@ -1,0 +1,51 @@
+"""When the performer moves and when it rests."""
+
+import dataclasses
+
+from waggle_tasks import errors
+from waggle_tasks.protocol import checks
+
+# Image and control rate: 25 Hz (paper, section 'Evaluation protocol').
+FRAME_RATE_HZ = 25
+FRAME_S = 1 / FRAME_RATE_HZ
+
+
+class TimingError(errors.WaggleError):
+  """A pause that is negative, endless or not a number."""
+
+
+def frames(duration_s: float) -> int:
+  """The number of camera frames nearest to a duration."""
+  return round(duration_s * FRAME_RATE_HZ)
+
+
+@dataclasses.dataclass(frozen=True)
+class Timing:
+  """The pauses of a broadcast.
+
+  The paper fixes the 2 s hover gap (section 'Visual null confirmation') and
+  says that settling and the lead-in add to it; with 7.5 s gestures the rest
+  follows from its END at 92.64 s: 4 + 8 x 7.5 + 7 x 4 = 92 s, and 0.64 s to
+  see that the motion has ended.
+
+  Attributes:
+    initial_hover_s: Stillness before START.
+    settle_s: Stillness after each gesture.
+    gap_s: The explicit hover gap between gestures.
+    lead_in_s: Stillness before the next gesture.
+  """
+
+  initial_hover_s: float = 4.0
+  settle_s: float = 1.0
+  gap_s: float = 2.0
+  lead_in_s: float = 1.0
+
+  def __post_init__(self) -> None:
+    for field in dataclasses.fields(self):
+      value = getattr(self, field.name)
+      checks.number(field.name, value, 0.0, 60.0, TimingError)
+
+  @property
+  def pause_s(self) -> float:
+    """Stillness between two gestures."""
+    return self.settle_s + self.gap_s + self.lead_in_s

@@ -1,0 +1,102 @@
+"""Tasks by name, and how one is built from a scenario."""
+
+import dataclasses
+import difflib
+
+from dm_control import composer
+
+from waggle_tasks import scenario as scenario_lib
+from waggle_tasks.arenas import flight_room
+from waggle_tasks.entities import observer, performer
+from waggle_tasks.tasks import broadcast, controls
+from waggle_tasks.tasks import parts as parts_lib
+
+Scenario = scenario_lib.Scenario
+
+SCENARIOS = {
+  'broadcast': Scenario(),
+  'no_send': Scenario(control='no_send'),
+  'black_input': Scenario(control='black_input'),
+  'interrupted': Scenario(control='interrupted'),
+}
+
+
+def find(name: str, **changes: object) -> Scenario:
+  """The scenario of a name, with some of its fields changed.
+
+  Args:
+    name: One of `SCENARIOS`.
+    **changes: Fields of `Scenario` and their new values.
+
+  Raises:
+    ScenarioError: if the name or a field is not known, with the close ones,
+      or if a value breaks a rule.
+  """
+  if name not in SCENARIOS:
+    raise scenario_lib.ScenarioError(_unknown('task', name, [*SCENARIOS]))
+  fields = [field.name for field in dataclasses.fields(Scenario)]
+  for field in changes:
+    if field not in fields:
+      raise scenario_lib.ScenarioError(_unknown('field', field, fields))
+  return dataclasses.replace(SCENARIOS[name], **changes)
+
+
+def build(scenario: Scenario) -> broadcast.Broadcast:
+  """Builds the task of a scenario from new entities."""
+  observers = tuple(
+    observer.Observer(f'observer_{number + 1}', scenario.camera)
+    for number in range(scenario.observers)
+  )
+  parts = parts_lib.Parts(
+    room=flight_room.FlightRoom(scenario.appearance),
+    performer=performer.Performer(),
+    observers=observers,
+    poses=scenario.poses(),
+    dance=scenario.schedule,
+    message=scenario.message,
+    duration_s=scenario.episode_s,
+    units=scenario.units,
+    jitter_m=scenario.jitter_m,
+  )
+  match scenario.control:
+    case 'no_send':
+      return controls.NoSend(parts)
+    case 'black_input':
+      return controls.BlackInput(parts, scenario.black_observer)
+    case 'interrupted':
+      return controls.Interrupted(parts, scenario.stop_s)
+  return broadcast.Broadcast(parts)
+
+
+def environment(scenario: Scenario) -> composer.Environment:
+  """The environment of a scenario; close it in the thread that made it."""
+  return composer.Environment(
+    build(scenario),
+    random_state=scenario.seed,
+    strip_singleton_obs_buffer_dim=True,
+    recompile_mjcf_every_episode=False,
+  )
+
+
+def load(name: str, **changes: object) -> composer.Environment:
+  """Makes the environment of a named scenario.
+
+  Args:
+    name: One of `SCENARIOS`.
+    **changes: Fields of `Scenario` and their new values.
+
+  Returns:
+    The environment; close it in the thread that made it.
+
+  Raises:
+    ScenarioError: see `find`.
+  """
+  return environment(find(name, **changes))
+
+
+def _unknown(kind: str, name: str, known: list[str]) -> str:
+  close = difflib.get_close_matches(name, known, n=3, cutoff=0.4)
+  return (
+    f'`{kind}` must be one of {known}: got {name!r}'
+    + (f'; close: {close}' if close else '')
+  )

@@ -1,0 +1,143 @@
+"""A scenario: every choice of one episode, frozen and checked."""
+
+import dataclasses
+import math
+
+from waggle_tasks import appearance as appearance_lib
+from waggle_tasks import errors
+from waggle_tasks.arenas import layouts
+from waggle_tasks.entities import observer
+from waggle_tasks.protocol import checks, frame, gestures, timing
+from waggle_tasks.protocol import payload as payload_lib
+from waggle_tasks.protocol import schedule as schedule_lib
+from waggle_tasks.tasks import safety
+
+CONTROLS = ('none', 'no_send', 'black_input', 'interrupted')
+LAYOUTS = ('arc', 'line')
+# After the last gesture: the 3 s null, the flight, the hold, and time to spare.
+AFTERMATH_S = 12.0
+NO_SEND_S = 10.0  # Paper, section 'Controls and supplemental suite'.
+INTERRUPTED_S = 60.0  # The same.
+MAX_OBSERVERS = 64
+
+
+class ScenarioError(errors.WaggleError):
+  """A field of a scenario that breaks a rule."""
+
+
+@dataclasses.dataclass(frozen=True)
+class Scenario:
+  """One episode's configuration; the defaults are the paper's (Table 2).
+
+  Attributes:
+    control: One of `CONTROLS`: 'none' for a nominal broadcast.
+    observers: How many observers, 1 to 64.
+    layout: One of `LAYOUTS`, or a `layouts.Layout` of your own.
+    distance_m: Radius of the arc, or distance of the line, 0.2 to 4 m.
+    half_span_deg: Angle from the middle of the arc to its end, 0 to 180.
+    spacing_m: Distance between neighbours in a line; the paper gives none.
+    payload: Six bits, d|hhh|rr.
+    jitter_m: Bound of the initial x and y offset of every vehicle.
+    seed: Of the environment's random state.
+    black_observer: Which observer sees black images ('black_input').
+    stop_s: When transmission stops ('interrupted').
+    duration_s: How long the episode lasts at most; None for 10 s without
+      sending, 60 s when interrupted, else 12 s after the dance.
+    codebook: The agreed gestures.
+    pauses: The agreed pauses.
+    units: The agreed heading step and distance unit.
+    appearance: How the room looks.
+    camera: One of `observer.CAMERAS`; both give the same picture.
+  """
+
+  control: str = 'none'
+  observers: int = 3
+  layout: str | layouts.Layout = 'arc'
+  distance_m: float = 1.3
+  half_span_deg: float = 30.0
+  spacing_m: float = 0.6
+  payload: str = '000010'
+  jitter_m: float = 0.0
+  seed: int = 0
+  black_observer: int = 2
+  stop_s: float = 26.0
+  duration_s: float | None = None
+  codebook: gestures.Codebook = gestures.v_codebook()
+  pauses: timing.Timing = timing.Timing()
+  units: payload_lib.Units = payload_lib.Units()
+  appearance: appearance_lib.Appearance = appearance_lib.Appearance()
+  camera: str = 'incremental'
+
+  def __post_init__(self) -> None:
+    checks.choice('control', self.control, CONTROLS, ScenarioError)
+    checks.choice('camera', self.camera, observer.CAMERAS, ScenarioError)
+    integers = {
+      'observers': (1, MAX_OBSERVERS),
+      'seed': (0, 2**32 - 1),
+      'black_observer': (1, self.observers),
+    }
+    if self.control != 'black_input':
+      del integers['black_observer']
+    for name, (low, high) in integers.items():
+      checks.integer(name, getattr(self, name), low, high, ScenarioError)
+    numbers = {
+      'distance_m': (0.2, 4.0),
+      'half_span_deg': (0.0, 180.0),
+      'spacing_m': (0.0, 4.0),
+      'jitter_m': (0.0, 0.1),
+      'stop_s': (0.0, 600.0),
+      'duration_s': (timing.FRAME_S, 600.0),
+    }
+    if self.duration_s is None:
+      del numbers['duration_s']
+    for name, (low, high) in numbers.items():
+      checks.number(name, getattr(self, name), low, high, ScenarioError)
+    payload_lib.Payload.from_bits(self.payload)
+    self.poses()
+
+  @property
+  def message(self) -> payload_lib.Payload:
+    """The payload."""
+    return payload_lib.Payload.from_bits(self.payload)
+
+  @property
+  def schedule(self) -> schedule_lib.Schedule:
+    """The dance of the whole message."""
+    return schedule_lib.broadcast(
+      frame.motions(self.message), self.codebook, self.pauses
+    )
+
+  @property
+  def episode_s(self) -> float:
+    """How long the episode lasts at most."""
+    if self.duration_s is not None:
+      return self.duration_s
+    if self.control == 'no_send':
+      return NO_SEND_S
+    if self.control == 'interrupted':
+      return INTERRUPTED_S
+    return self.schedule.end_s + AFTERMATH_S
+
+  def poses(self) -> dict[str, layouts.Pose]:
+    """Where each vehicle starts, before jitter, by its name.
+
+    Raises:
+      ScenarioError: if the layout is not known.
+      layouts.LayoutError: if two vehicles would be too close.
+    """
+    poses = {'performer': layouts.performer_pose()}
+    for index, pose in enumerate(self._layout().poses(self.observers)):
+      poses[f'observer_{index + 1}'] = pose
+    # Two neighbours can come closer by the jitter of both.
+    layouts.check_spacing(
+      poses, safety.MINIMUM_SPACING_M + 2 * self.jitter_m
+    )
+    return poses
+
+  def _layout(self) -> layouts.Layout:
+    if not isinstance(self.layout, str):
+      return self.layout
+    checks.choice('layout', self.layout, LAYOUTS, ScenarioError)
+    if self.layout == 'arc':
+      return layouts.Arc(self.distance_m, math.radians(self.half_span_deg))
+    return layouts.Line(self.distance_m, self.spacing_m)

@@ -1,0 +1,1 @@
+"""The tasks: what is danced, what is seen, what ends an episode."""

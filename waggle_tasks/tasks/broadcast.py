@@ -1,0 +1,300 @@
+"""The broadcast: one performer dances, observers read it and fly."""
+
+from collections.abc import Mapping, Sequence
+import math
+
+from dm_control import composer
+from dm_control import mjcf
+from dm_control.composer.observation import observable
+from dm_env import specs
+import numpy as np
+
+from waggle_tasks import errors
+from waggle_tasks.arenas import flight_room, layouts
+from waggle_tasks.entities import controller, observer, performer
+from waggle_tasks.protocol import reference, timing
+from waggle_tasks.tasks import parts as parts_lib
+from waggle_tasks.tasks import progress, safety
+
+PHYSICS_TIMESTEP_S = 0.004
+OBSERVATIONS = ('camera', 'time_s', 'position_m')
+# Limits of a reference: the stock firmware's 1 m/s per axis and 20 degrees of
+# tilt, 3.57 m/s^2.
+_MAX_SPEED_MPS = 1.0
+_MAX_ACCELERATION_MPS2 = 3.57
+
+
+class ActionError(errors.WaggleError):
+  """An action that is not one finite reference for each observer."""
+
+
+class Broadcast(composer.Task):
+  """Observers see a dance, each through its own eye, and fly its message.
+
+  Observations are a list of dicts, one for each observer: `camera`
+  (480, 640, 3) uint8, `time_s` () float64 and `position_m` (3,) float64.
+  Actions are a list of (13,) float64 arrays, see `reference.Reference`: the
+  reference for the middle of the coming 0.04 s. What a reference asks for is
+  judged by `safety`.
+
+  Rewards are a list of floats: 1 when an observer has arrived where the
+  message says, -1 when it first moves before the message is complete. The
+  discount is 0 on contact and 1 otherwise. The episode is over on contact,
+  when every observer has arrived and held its place for 2 s, and at the end
+  of the protocol's time.
+  """
+
+  def __init__(self, parts: parts_lib.Parts) -> None:
+    """Puts the vehicles into the room.
+
+    Args:
+      parts: What the task is made of.
+    """
+    self._parts = parts
+    self._observers = {o.mjcf_model.model: o for o in parts.observers}
+    name = parts.performer.mjcf_model.model
+    self._vehicles = {name: parts.performer, **self._observers}
+    self._joints, self._controllers = [], {}
+    for name, vehicle in self._vehicles.items():
+      pose = parts.poses[name]
+      attached = parts.room.add_vehicle(vehicle, pose)
+      self._joints.append(attached.freejoint)
+      self._controllers[name] = controller.Controller(
+        parts.room.mjcf_model, vehicle, pose.yaw_rad
+      )
+    for visible in self.observables:
+      for each in visible.values():
+        each.enabled = True
+    self.set_timesteps(timing.FRAME_S, PHYSICS_TIMESTEP_S)
+
+  @property
+  def root_entity(self) -> flight_room.FlightRoom:
+    """The arena."""
+    return self._parts.room
+
+  @property
+  def performer(self) -> performer.Performer:
+    """The vehicle that dances."""
+    return self._parts.performer
+
+  @property
+  def observers(self) -> tuple[observer.Observer, ...]:
+    """The vehicles that watch, in the order of observations and actions."""
+    return tuple(self._observers.values())
+
+  @property
+  def observables(self) -> list[dict[str, observable.Observable]]:
+    """For each observer what it may see."""
+    everything = [
+      each.observables.as_dict(fully_qualified=False)
+      for each in self._observers.values()
+    ]
+    return [{name: all_[name] for name in OBSERVATIONS} for all_ in everything]
+
+  def initialize_episode(
+    self, physics: mjcf.Physics, random_state: np.random.RandomState
+  ) -> None:
+    """Places the vehicles and begins the dance."""
+    poses = layouts.jittered(
+      [self._parts.poses[name] for name in self._vehicles],
+      self._parts.jitter_m,
+      random_state,
+    )
+    self._homes = dict(zip(self._vehicles, poses, strict=True))
+    for name, pose in self._homes.items():
+      half_rad = pose.yaw_rad / 2
+      self._vehicles[name].set_pose(
+        physics,
+        np.array(pose.position_m),
+        np.array([math.cos(half_rad), 0.0, 0.0, math.sin(half_rad)]),
+      )
+    self._frame = 0
+    self._begin_dance()
+    displacement_m = self._parts.message.displacement_m(self._parts.units)
+    self._gates, self._progress = [], []
+    for name in self._observers:
+      home_m = np.array(self._homes[name].position_m)
+      hold = reference.Reference.hover(home_m, self._homes[name].yaw_rad)
+      self._gates.append(safety.Gate(name, hold))
+      target_m = home_m + displacement_m if self.sends_message else None
+      self._progress.append(progress.Progress(home_m, target_m))
+    self._rewards = [0.0] * len(self._observers)
+    self._contacts: tuple[tuple[str, str], ...] = ()
+
+  def _begin_dance(self) -> None:
+    """Tells the performer what to fly in this episode."""
+    self.performer.perform(self._parts.dance)
+
+  @property
+  def sends_message(self) -> bool:
+    """Whether this episode's dance is a whole message."""
+    return self.performer.is_whole
+
+  def before_step(
+    self,
+    physics: mjcf.Physics,
+    action: Sequence[np.ndarray],
+    random_state: np.random.RandomState,
+  ) -> None:
+    """Commands the vehicles for the coming control step.
+
+    Raises:
+      ActionError: if the action is not one finite reference per observer.
+    """
+    del random_state
+    time_s = self._frame * timing.FRAME_S
+    middle_s = time_s + timing.FRAME_S / 2
+    home = self._homes['performer']
+    motion = self.performer.motion(
+      np.array(home.position_m), home.yaw_rad, middle_s
+    )
+    self._controllers['performer'].command(physics, *motion, home.yaw_rad)
+    wanted = self._references(action)
+    self._judge(wanted, self.positions_m(physics), time_s)
+    for gate, each in zip(self._gates, wanted, strict=True):
+      followed = gate.follow(each, time_s)
+      self._controllers[gate.name].command(
+        physics,
+        followed.position_m,
+        followed.velocity_mps,
+        followed.acceleration_mps2,
+        followed.yaw_rad,
+      )
+
+  def _references(
+    self, action: Sequence[np.ndarray]
+  ) -> list[reference.Reference]:
+    """Checks an action and brings it within its bounds."""
+    if len(action) != len(self._observers):
+      raise ActionError(
+        f'`action` must hold one reference for each of {len(self._observers)}'
+        f' observers: got {len(action)}'
+      )
+    out = []
+    for name, array in zip(self._observers, action, strict=True):
+      array = np.asarray(array, dtype=float)
+      if array.shape != (reference.SIZE,) or not np.isfinite(array).all():
+        raise ActionError(
+          f'`action` of {name} must be {reference.SIZE} finite numbers:'
+          f' got {array}'
+        )
+      array = np.clip(array, *_bounds())
+      out.append(reference.Reference.from_array(array))
+    return out
+
+  def _judge(
+    self,
+    wanted: Sequence[reference.Reference],
+    positions_m: Mapping[str, np.ndarray],
+    time_s: float,
+  ) -> None:
+    """Accepts or refuses the commands that begin with this step."""
+    requests = {
+      gate.name: plan
+      for gate, each in zip(self._gates, wanted, strict=True)
+      if (plan := gate.request(each, positions_m[gate.name], time_s))
+    }
+    if not requests:
+      return
+    plans = {gate.name: gate.plan for gate in self._gates if gate.plan}
+    others = {**positions_m, **plans, **requests}
+    for gate in self._gates:
+      if plan := requests.get(gate.name):
+        rest = {k: v for k, v in others.items() if k != gate.name}
+        reason = safety.conflict(plan, rest, self._parts.minimum_spacing_m)
+        gate.judge(plan, reason)
+
+  def after_step(
+    self, physics: mjcf.Physics, random_state: np.random.RandomState
+  ) -> None:
+    """Takes stock of the step."""
+    del random_state
+    self._frame += 1
+    self._contacts = self._find_contacts(physics)
+    positions_m = self.positions_m(physics)
+    velocities_mps = self.velocities_mps(physics)
+    authorised = (
+      self.sends_message
+      and self._frame * timing.FRAME_S >= self.performer.end_s
+    )
+    self._rewards = [
+      each.update(positions_m[name], velocities_mps[name], authorised)
+      for name, each in zip(self._observers, self._progress, strict=True)
+    ]
+
+  def _find_contacts(
+    self, physics: mjcf.Physics
+  ) -> tuple[tuple[str, str], ...]:
+    model, pairs = physics.model, set()
+    for contact in physics.data.contact[: physics.data.ncon]:
+      names = [
+        model.id2name(model.geom_bodyid[geom], 'body').split('/')[0]
+        for geom in (contact.geom1, contact.geom2)
+      ]
+      pairs.add(tuple(sorted(name or 'room' for name in names)))
+    return tuple(sorted(pairs))
+
+  def positions_m(self, physics: mjcf.Physics) -> dict[str, np.ndarray]:
+    """True position of every vehicle, (3,) world metres, by its name."""
+    positions = physics.bind(self._joints).qpos.reshape(-1, 7)[:, :3]
+    return dict(zip(self._vehicles, positions, strict=True))
+
+  def velocities_mps(self, physics: mjcf.Physics) -> dict[str, np.ndarray]:
+    """True velocity of every vehicle, (3,) world m/s, by its name."""
+    velocities = physics.bind(self._joints).qvel.reshape(-1, 6)[:, :3]
+    return dict(zip(self._vehicles, velocities, strict=True))
+
+  @property
+  def contacts(self) -> tuple[tuple[str, str], ...]:
+    """Pairs of names that touched in the last step; 'room' is the arena."""
+    return self._contacts
+
+  @property
+  def refusals(self) -> tuple[safety.Refusal, ...]:
+    """The commands that the safety checks refused in this episode."""
+    return tuple(gate.refusal for gate in self._gates if gate.refusal)
+
+  def get_reward(self, physics: mjcf.Physics) -> list[float]:
+    """One reward for each observer, see the class."""
+    del physics
+    return self._rewards
+
+  def get_discount(self, physics: mjcf.Physics) -> float:
+    """0 on contact, otherwise 1."""
+    del physics
+    return 0.0 if self._contacts else 1.0
+
+  def should_terminate_episode(self, physics: mjcf.Physics) -> bool:
+    """Whether this was the last step, see the class."""
+    del physics
+    return (
+      bool(self._contacts)
+      or self._frame >= timing.frames(self._parts.duration_s)
+      or all(each.done for each in self._progress)
+    )
+
+  def action_spec(self, physics: mjcf.Physics) -> list[specs.BoundedArray]:
+    """One reference for each observer: (13,) float64, bounded."""
+    del physics
+    low, high = _bounds()
+    return [
+      specs.BoundedArray((reference.SIZE,), float, low, high, name=name)
+      for name in self._observers
+    ]
+
+  def get_reward_spec(self) -> list[specs.Array]:
+    """One float for each observer."""
+    return [specs.Array((), float, name=name) for name in self._observers]
+
+
+def _bounds() -> tuple[np.ndarray, np.ndarray]:
+  """Lowest and highest reference, (13,) each."""
+  half_m = flight_room.HALF_WIDTH_M
+  low_m = np.array([-half_m, -half_m, 0.0])
+  high_m = np.array([half_m, half_m, flight_room.HEIGHT_M])
+  speed = np.full(3, _MAX_SPEED_MPS)
+  acceleration = np.full(3, _MAX_ACCELERATION_MPS2)
+  return (
+    np.concatenate([low_m, -speed, -acceleration, [-math.pi], low_m]),
+    np.concatenate([high_m, speed, acceleration, [math.pi], high_m]),
+  )

@@ -1,0 +1,38 @@
+"""What a task is made of: built entities and the agreed language."""
+
+from collections.abc import Mapping
+import dataclasses
+
+from waggle_tasks.arenas import flight_room, layouts
+from waggle_tasks.entities import observer, performer
+from waggle_tasks.protocol import payload, schedule
+from waggle_tasks.tasks import safety
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class Parts:
+  """The built parts of one task; entities belong to one task only.
+
+  Attributes:
+    room: The arena.
+    performer: The vehicle that dances.
+    observers: The vehicles that watch.
+    poses: Where each vehicle starts, by the name of its model.
+    dance: What the performer flies.
+    message: What the dance says.
+    duration_s: How long an episode lasts at most.
+    units: The agreed heading step and distance unit.
+    jitter_m: Bound of each vehicle's initial x and y offset.
+    minimum_spacing_m: Smallest distance allowed between two vehicles.
+  """
+
+  room: flight_room.FlightRoom
+  performer: performer.Performer
+  observers: tuple[observer.Observer, ...]
+  poses: Mapping[str, layouts.Pose]
+  dance: schedule.Schedule
+  message: payload.Payload
+  duration_s: float
+  units: payload.Units = payload.Units()
+  jitter_m: float = 0.0
+  minimum_spacing_m: float = safety.MINIMUM_SPACING_M

@@ -1,0 +1,69 @@
+"""What an observer has achieved so far, judged by true positions."""
+
+import dataclasses
+
+import numpy as np
+
+from waggle_tasks.protocol import flight, timing
+
+# An observer that leaves its place by more than this has moved.
+MOTION_M = 0.01
+
+
+@dataclasses.dataclass
+class Progress:
+  """One observer's way through an episode.
+
+  Attributes:
+    home_m: (3,) where it began.
+    target_m: (3,) where the message says, or None when none is sent.
+    trespassed: Whether it moved before a message was complete.
+    arrived: Whether it stood at the target long enough.
+    held_frames: Frames since it arrived, while it stayed there.
+  """
+
+  home_m: np.ndarray
+  target_m: np.ndarray | None
+  trespassed: bool = False
+  arrived: bool = False
+  held_frames: int = 0
+  _dwell_frames: int = 0
+
+  def update(
+    self, position_m: np.ndarray, velocity_mps: np.ndarray, authorised: bool
+  ) -> float:
+    """Takes one frame's truth.
+
+    Args:
+      position_m: (3,) true position.
+      velocity_mps: (3,) true velocity.
+      authorised: Whether a whole message has been flown.
+
+    Returns:
+      The reward: 1 on arrival, -1 on the first unauthorised motion, else 0.
+    """
+    if not authorised or self.target_m is None:
+      moved = np.linalg.norm(position_m - self.home_m) > MOTION_M
+      if moved and not self.trespassed:
+        self.trespassed = True
+        return -1.0
+      return 0.0
+    there = flight.is_arrived(
+      float(np.linalg.norm(position_m - self.target_m)),
+      float(np.linalg.norm(velocity_mps)),
+    )
+    self._dwell_frames = self._dwell_frames + 1 if there else 0
+    if self.arrived:
+      self.held_frames = self.held_frames + 1 if there else 0
+    elif (
+      not self.trespassed
+      and self._dwell_frames > timing.frames(flight.ARRIVAL_DWELL_S)
+    ):
+      self.arrived = True
+      return 1.0
+    return 0.0
+
+  @property
+  def done(self) -> bool:
+    """Whether it has arrived and held its place for the 2 s asked for."""
+    return self.arrived and self.held_frames >= timing.frames(flight.HOLD_S)

@@ -1,0 +1,153 @@
+"""Shared safety: a flight whose spacing would be unsafe is not begun.
+
+The checks see true positions and planned paths; they reject, and neither
+avoid nor replan (paper, section 'Per-observer navigation').
+"""
+
+from collections.abc import Mapping
+import dataclasses
+
+import numpy as np
+
+from waggle_tasks.protocol import flight, reference
+
+# Between two centres of mass. Vehicles are 0.137 m across their rotors, so
+# this leaves 2 cm.
+MINIMUM_SPACING_M = 0.16
+# A goal nearer than this to the hold position is no command.
+COMMAND_M = 0.01
+# How far a reference may be from the way that was judged.
+_CORRIDOR_M = 0.05
+# Moments at which the spacing of two plans is compared.
+_MOMENTS_S = np.linspace(0.0, flight.DURATION_S, 61)
+
+
+@dataclasses.dataclass(frozen=True)
+class Refusal:
+  """A command that was not followed.
+
+  Attributes:
+    time_s: Simulation time.
+    vehicle: Whose command it was.
+    reason: Why.
+  """
+
+  time_s: float
+  vehicle: str
+  reason: str
+
+
+def conflict(
+  plan: flight.Flight,
+  others: Mapping[str, flight.Flight | np.ndarray],
+  minimum_m: float,
+) -> str | None:
+  """Whether a plan comes too near to another vehicle.
+
+  Args:
+    plan: The flight to judge.
+    others: By vehicle name, its own plan, or (3,) the true position in which
+      it is taken to stay.
+    minimum_m: Smallest distance allowed between two centres of mass.
+
+  Returns:
+    The reason for refusing it, or None.
+  """
+  times_s = plan.begin_s + _MOMENTS_S
+  own_m = np.stack([plan.motion(t)[0] for t in times_s])  # (T, 3)
+  for name, other in others.items():
+    if isinstance(other, flight.Flight):
+      other = np.stack([other.motion(t)[0] for t in times_s])
+    nearest_m = np.linalg.norm(own_m - other, axis=1).min()
+    if nearest_m < minimum_m:
+      return (
+        f'the way would pass {name} at {nearest_m:.3f} m, under'
+        f' {minimum_m:.3f} m'
+      )
+  return None
+
+
+class Gate:
+  """Lets one observer's references through once its command is accepted.
+
+  Before a command, and after a refused one, the observer holds its place.
+  One command is accepted in an episode.
+  """
+
+  def __init__(self, name: str, hold: reference.Reference) -> None:
+    """Makes the gate of an observer that holds its place.
+
+    Args:
+      name: The observer's name.
+      hold: Its hover at the beginning of the episode.
+    """
+    self.name = name
+    self.plan: flight.Flight | None = None
+    self.refusal: Refusal | None = None
+    self._hold = hold
+
+  def request(
+    self, wanted: reference.Reference, position_m: np.ndarray, time_s: float
+  ) -> flight.Flight | None:
+    """The plan that a reference asks for, when it is a first command.
+
+    Args:
+      wanted: The observer's reference.
+      position_m: (3,) its true position.
+      time_s: Simulation time.
+
+    Returns:
+      The flight to judge, or None when the observer hovers, or has already
+      been judged.
+    """
+    if self.plan or self.refusal:
+      return None
+    if np.linalg.norm(wanted.goal_m - self._hold.goal_m) < COMMAND_M:
+      return None
+    return flight.Flight(position_m, wanted.goal_m, time_s)
+
+  def judge(self, plan: flight.Flight, reason: str | None) -> None:
+    """Accepts a plan, or refuses it for a reason."""
+    if reason is None:
+      self.plan = plan
+    else:
+      self._refuse(plan.begin_s, reason)
+
+  def follow(
+    self, wanted: reference.Reference, time_s: float
+  ) -> reference.Reference:
+    """The reference that the controller gets.
+
+    Args:
+      wanted: The observer's reference.
+      time_s: Simulation time.
+
+    Returns:
+      `wanted` along an accepted way, otherwise the last place held.
+    """
+    if self.plan is None or self.refusal:
+      return self._hold
+    if reason := self._astray(wanted):
+      self._refuse(time_s, reason)
+    else:
+      self._hold = reference.Reference.hover(wanted.position_m, wanted.yaw_rad)
+      return wanted
+    return self._hold
+
+  def _astray(self, wanted: reference.Reference) -> str | None:
+    """Why a reference does not belong to the accepted plan."""
+    if np.linalg.norm(wanted.goal_m - self.plan.goal_m) > COMMAND_M:
+      return 'one command was already accepted in this episode'
+    way = self.plan.goal_m - self.plan.begin_m
+    offset = wanted.position_m - self.plan.begin_m
+    along = np.clip(offset @ way / (way @ way), 0.0, 1.0)
+    aside_m = np.linalg.norm(offset - along * way)
+    if aside_m > _CORRIDOR_M:
+      return (
+        f'the reference is {aside_m:.3f} m from its way, over'
+        f' {_CORRIDOR_M:.3f} m'
+      )
+    return None
+
+  def _refuse(self, time_s: float, reason: str) -> None:
+    self.refusal = Refusal(time_s, self.name, reason)
