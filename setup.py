@@ -8,7 +8,7 @@ import setuptools
 HERE = pathlib.Path(__file__).parent
 FOLDERS = ('entities', 'arenas', 'agents', 'experiments')
 
-TEST = ('pytest>=8', 'pytest-xdist>=3', 'hypothesis>=6')
+TEST = ('pytest>=8', 'pytest-xdist>=3', 'hypothesis>=6', 'setuptools>=77')
 DEV = (*TEST, 'ruff>=0.14', 'build>=1')
 
 

@@ -1,6 +1,7 @@
 """The paper's receiver: images and timestamps in, events out."""
 
 import dataclasses
+from typing import Protocol
 
 import numpy as np
 
@@ -29,6 +30,14 @@ class Event:
   recognition: recogniser.Recognition | None = None
   message: payload.Payload | None = None
   rejection: str | None = None
+
+
+class Receiver(Protocol):
+  """What every receiver can do; images and times are all that it gets."""
+
+  def step(self, image: np.ndarray, time_s: float) -> tuple[Event, ...]:
+    """Takes an image, (H, W, 3) uint8 RGB, and returns what it confirms."""
+    ...
 
 
 class KltReceiver:

@@ -49,7 +49,6 @@ class Segmenter:
     Returns:
       The segment that ended with this frame, if one did.
     """
-    before_s = self._tracks[-1].time_s if self._tracks else track.time_s
     self._tracks.append(track)
     if not track.valid:
       return self._lose(track)
@@ -59,16 +58,14 @@ class Segmenter:
         self._fast_since_s = math.nan
         del self._tracks[:-1]
       elif math.isnan(self._fast_since_s):
-        self._fast_since_s = before_s
-      if config_lib.lasted(
-        self._fast_since_s, track.time_s, self._motion.on_s
-      ):
+        self._fast_since_s = track.time_s
+      if config_lib.lasted(self._fast_since_s, track.time_s, self._motion.on_s):
         self.active, self._slow_since_s = True, math.nan
       return None
     if track.speed_px_s >= self._motion.off_px_s:
       self._slow_since_s = math.nan
     elif math.isnan(self._slow_since_s):
-      self._slow_since_s = before_s
+      self._slow_since_s = track.time_s
     if config_lib.lasted(self._slow_since_s, track.time_s, self._motion.off_s):
       return self._finish(self._slow_since_s, None)
     return None
@@ -84,9 +81,7 @@ class Segmenter:
     return None
 
   def _finish(self, end_s: float, loss: str | None) -> Segment:
-    path_px = np.array(
-      [t.centre_px for t in self._tracks if t.time_s <= end_s]
-    )
+    path_px = np.array([t.centre_px for t in self._tracks if t.time_s <= end_s])
     segment = Segment(self._fast_since_s, end_s, path_px, loss)
     self.active = False
     self._fast_since_s = self._slow_since_s = math.nan

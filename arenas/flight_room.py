@@ -1,117 +1,227 @@
-"""The flight room: floor, walls, light and the cameras everyone shares."""
+"""The flight room: floor, wall, light and the cameras that everyone shares."""
 
+from collections.abc import Sequence
 import math
 
-from dm_control import composer
-from dm_control import mjcf
+from dm_control import composer, mjcf
 import numpy as np
 
 from waggle_tasks import appearance
-from waggle_tasks.arenas import scenery
-from waggle_tasks.arenas import layouts
+from waggle_tasks.arenas import layouts, scenery, views
 
-HALF_WIDTH_M = 7.0
-HALF_DEPTH_M = 4.5
-HEIGHT_M = 6.5
-IMAGE_SIZE = (640, 480)  # Width and height of an observer's image, pixels.
+# Flat floor for twenty observers in a line 0.6 m apart, or on an arc of 3 m,
+# that then fly the longest message, 0.8 m; and the wall's curve around it.
+HALF_WIDTH_M = 8.7
+HALF_DEPTH_M = 6.8
+HEIGHT_M = 7.0
+_CURVE_M, _CORNER_M = 2.2, 2.6
 
-_FLOOR = (0.46, 0.58, 0.70, 1)
-_TILE = (0.42, 0.535, 0.65, 1)
+# Tiles are two units of displacement apart (paper, equation 2): a message of
+# 0.4 m along y carries an observer from one tile to the next.
+TILE_M = 0.4
+PAD_RADIUS_M = 0.13
+
+# Twice an observer's image of 640 x 480 along each axis, for supersampling.
+_BUFFER_PX = (1280, 960)
+
+_SLATE = (0.35, 0.43, 0.51, 1.0)
+_TILE = (0.50, 0.57, 0.64, 1.0)
 _AMBER = (0.95, 0.62, 0.10, 1.0)
-_WHITE = (0.95, 0.96, 0.97, 1)
+_CHALK = (0.95, 0.96, 0.97, 1.0)
 
-AMB,HL=0.62,0.24
+_AMBIENT, _HEADLIGHT = 0.68, 0.12
+# Direction and brightness; the last stands in for light off the floor.
+_LIGHTS = {
+  'key': ((0.20, 0.10, -1.0), 0.38),
+  'fill': ((-1.0, 0.10, -0.25), 0.16),
+  'bounce': ((0.0, 0.10, 1.0), 0.12),
+}
+
 
 class FlightRoom(composer.Arena):
-  """A room with the performance area above its middle."""
+  """A studio with a slate floor and the performance area at its middle.
+
+  Vehicles come in through `add_vehicle`, each above a pad that is painted on
+  the floor: with shadows off, pads show where a vehicle is and, once it has
+  moved, where it came from.
+
+  `views.SharedViews` tells of its cameras.
+  """
 
   def _build(
     self,
-    look: appearance.Appearance = appearance.Appearance(),
+    look: appearance.Appearance | None = None,
     name: str = 'flight_room',
   ) -> None:
-    super()._build(name=name)
-    root = self._mjcf_root
-    self._poses = []
-    # Composer's floor on mass would add 10 mg to every attachment frame.
-    root.compiler.boundmass = 0.0
-    root.compiler.boundinertia = 0.0
-    g = getattr(root.visual, 'global')
-    g.offwidth, g.offheight = 2 * IMAGE_SIZE[0], 2 * IMAGE_SIZE[1]
-    root.visual.quality.set_attributes(
-      offsamples=0, numslices=32, numstacks=2, numquads=1
-    )
-    root.statistic.set_attributes(extent=1.0, center=(0, 0, 1.3))
-    root.visual.map.set_attributes(znear=0.05, zfar=25.0)
-    root.visual.headlight.set_attributes(
-      ambient=(AMB,)*3, diffuse=(HL,)*3, specular=(0, 0, 0)
-    )
-    w, d = HALF_WIDTH_M, HALF_DEPTH_M
-    root.worldbody.add('geom', name='floor', type='plane', size=(w, d, 1),
-                       rgba=_FLOOR)
-    def mesh(name, vf, rgba):
-      v, f, *n = vf
-      more = dict(normal=n[0].ravel()) if n else {}
-      m = root.asset.add('mesh', name=name, vertex=v.ravel(),
-                          face=f.ravel(), inertia='shell', **more)
-      root.worldbody.add('geom', name=name, type='mesh', mesh=m,
-                       rgba=rgba, contype=0, conaffinity=0)
-    mesh('wall', scenery.studio_wall(w, d, HEIGHT_M, 2.2, 2.4), _FLOOR)
-    if look.floor == 'honeycomb':
-      v, f = scenery.honeycomb(0.4, 0.016, 5, 0.001)
-      mesh('tiles', (v, f), _TILE)
-      mesh('middle', scenery.ring(0.205,0.222,6), _AMBER)
-    v, f = scenery.ring(0.118, 0.130, 32)
-    root.asset.add('mesh', name='pad', vertex=v.ravel(), face=f.ravel(), inertia='shell')
-    for name, direction, diffuse in (
-      ('key', (0.20, 0.10, -1), 0.36),
-      ('fill', (-1.0, 0.10, -0.25), 0.16),
-      ('bounce', (0.0, 0.1, 1.0), 0.12),
-    ):
-      root.worldbody.add('light', name=name, pos=(0, 0, 4), dir=direction,
-                         type='directional', castshadow=look.shadows,
-                         diffuse=(diffuse,)*3, specular=(0, 0, 0))
-    self._top = root.worldbody.add('camera', name='top', pos=(0, 0, 4),
-                       xyaxes=(1, 0, 0, 0, 1, 0), projection='orthographic')
-    self._overview = root.worldbody.add('camera', name='overview', fovy=32)
-    self._back = root.worldbody.add('camera', name='performer_view', fovy=45)
-    aim(self._back, (0, 0.75, 1.58), (0, -1.3, 1.22))
-    self._frame()
+    """Builds the empty room.
 
-  def _frame(self):
-    xy = np.array([p.position_m[:2] for p in self._poses] or [(0., 0)])
-    m = 0.6
-    low, high = xy.min(0) - m, xy.max(0) + m
-    cx, cy = (low + high) / 2
-    hx, hy = (high - low) / 2
-    self._top.pos = (cx, cy, 4)
-    self._top.fovy = 2 * max(hy, hx * 3 / 4)
-    r = math.hypot(hx, hy)
-    dist = 0.62*r / math.sin(math.radians(32 / 2))
-    dirn = np.array((0.60, -0.80, 0.34)); dirn /= np.linalg.norm(dirn)
-    tgt = np.array((cx, cy, 1.0))
-    aim(self._overview, tgt + dist * dirn, tgt)
+    Args:
+      look: What it looks like; the default appearance if None.
+      name: Model name.
+    """
+    super()._build(name=name)
+    self._look = look or appearance.Appearance()
+    self._positions_m: list[tuple[float, float, float]] = []
+    self._set_options()
+    self._add_room()
+    self._add_lights()
+    self._views = views.SharedViews(self._mjcf_root)
+
+  @property
+  def look(self) -> appearance.Appearance:
+    """What the room looks like."""
+    return self._look
 
   def add_vehicle(
     self, vehicle: composer.Entity, pose: layouts.Pose
   ) -> mjcf.Element:
-    """Attaches a free vehicle at a pose and returns its frame."""
+    """Attaches a vehicle that flies freely from a pose, and paints its pad.
+
+    Args:
+      vehicle: An entity with its centre of mass at its origin; its model's
+        name is kept, so it must be new to the room.
+      pose: Where it starts.
+
+    Returns:
+      The frame that carries the vehicle; its `freejoint` moves it.
+
+    Raises:
+      layouts.LayoutError: if the room holds a vehicle of that name, or if the
+        pose lies outside.
+    """
+    name = vehicle.mjcf_model.model
+    taken = [other.mjcf_model.model for other in self._attached]
+    if name in taken:
+      raise layouts.LayoutError(
+        f'`name` of a vehicle must be new to the room, which holds {taken}:'
+        f' got {name!r}'
+      )
+    x_m, y_m, z_m = pose.position_m
+    if not (
+      abs(x_m) < HALF_WIDTH_M
+      and abs(y_m) < HALF_DEPTH_M
+      and 0.0 < z_m < HEIGHT_M
+    ):
+      raise layouts.LayoutError(
+        f'`pose` of {name} must lie in the room, |x| < {HALF_WIDTH_M},'
+        f' |y| < {HALF_DEPTH_M} and 0 < z < {HEIGHT_M} m:'
+        f' got {pose.position_m}'
+      )
     frame = self.add_free_entity(vehicle)
     frame.pos = pose.position_m
-    frame.quat = (
-      math.cos(pose.yaw_rad / 2), 0.0, 0.0, math.sin(pose.yaw_rad / 2)
-    )
-    x, y, _ = pose.position_m
-    self._mjcf_root.worldbody.add('geom', type='mesh', mesh='pad',
-        pos=(x, y, .003), rgba=_WHITE, contype=0, conaffinity=0)
-    self._poses.append(pose)
-    self._frame()
+    half_rad = pose.yaw_rad / 2.0
+    frame.quat = (math.cos(half_rad), 0.0, 0.0, math.sin(half_rad))
+    self._add_drawn(f'pad_{name}', 'pad', _CHALK, (x_m, y_m, 0.003))
+    self._positions_m.append(pose.position_m)
+    self._views.show(self._positions_m)
     return frame
 
-def aim(camera, pos, target):
-    pos, target = np.array(pos, float), np.array(target, float)
-    back = pos - target
-    x = np.cross((0, 0, 1), back); x /= np.linalg.norm(x)
-    y = np.cross(back, x)
-    camera.pos = pos
-    camera.xyaxes = np.r_[x, y / np.linalg.norm(y)]
+  def _set_options(self) -> None:
+    root = self._mjcf_root
+    # Composer's lower bound would add 10 mg to every attachment frame.
+    root.compiler.boundmass = 0.0
+    root.compiler.boundinertia = 0.0
+    width_px, height_px = _BUFFER_PX
+    getattr(root.visual, 'global').set_attributes(
+      offwidth=width_px, offheight=height_px
+    )
+    root.visual.quality.set_attributes(
+      offsamples=0, numslices=12, numstacks=6, numquads=1
+    )
+    # Near and far are in units of the extent: 0.05 m and 30 m.
+    root.statistic.set_attributes(
+      extent=1.0, center=(0.0, 0.0, layouts.HOVER_HEIGHT_M)
+    )
+    root.visual.map.set_attributes(znear=0.05, zfar=30.0)
+
+  def _add_room(self) -> None:
+    self._mjcf_root.worldbody.add(
+      'geom',
+      name='floor',
+      type='plane',
+      size=(30.0, 30.0, 30.0),  # Seen past the wall from outside the room.
+      rgba=_SLATE,
+    )
+    self._add_walls()
+    wall = scenery.studio_wall(
+      HALF_WIDTH_M, HALF_DEPTH_M, HEIGHT_M, _CURVE_M, _CORNER_M
+    )
+    self._add_mesh('wall', wall)
+    self._add_drawn('wall', 'wall', _SLATE)
+    self._add_mesh('ceiling', scenery.ceiling(HALF_WIDTH_M, HALF_DEPTH_M))
+    self._add_drawn('ceiling', 'ceiling', _SLATE, (0.0, 0.0, HEIGHT_M))
+    if self._look.floor == 'honeycomb':
+      self._add_mesh('tiles', scenery.honeycomb(TILE_M, 0.016, 5))
+      self._add_drawn('tiles', 'tiles', _TILE, (0.0, 0.0, 0.001))
+      # Around the tile below the performer.
+      self._add_mesh('middle', scenery.ring(0.205, TILE_M / math.sqrt(3.0), 6))
+      self._add_drawn('middle', 'middle', _AMBER, (0.0, 0.0, 0.002))
+    self._add_mesh('pad', scenery.ring(PAD_RADIUS_M - 0.012, PAD_RADIUS_M, 32))
+
+  def _add_walls(self) -> None:
+    """Adds what vehicles bump into; what is seen curves inside of it."""
+    for name, axis, distance_m in (
+      ('east', (-1, 0, 0), HALF_WIDTH_M),
+      ('west', (1, 0, 0), HALF_WIDTH_M),
+      ('north', (0, -1, 0), HALF_DEPTH_M),
+      ('south', (0, 1, 0), HALF_DEPTH_M),
+      ('up', (0, 0, -1), HEIGHT_M),
+    ):
+      self._mjcf_root.worldbody.add(
+        'geom',
+        name=f'wall_{name}',
+        type='plane',
+        size=(1.0, 1.0, 1.0),  # Of its picture; it has no edge.
+        pos=-distance_m * np.array(axis, dtype=float),
+        zaxis=axis,
+        group=3,
+      )
+
+  def _add_mesh(self, name: str, mesh: scenery.Mesh) -> None:
+    self._mjcf_root.asset.add(
+      'mesh',
+      name=name,
+      vertex=mesh.vertices_m.ravel(),
+      normal=mesh.normals.ravel(),
+      face=mesh.faces.ravel(),
+      inertia='shell',
+    )
+
+  def _add_drawn(
+    self,
+    name: str,
+    mesh: str,
+    rgba: Sequence[float],
+    position_m: Sequence[float] = (0.0, 0.0, 0.0),
+  ) -> None:
+    """Adds a mesh that is seen and not felt."""
+    self._mjcf_root.worldbody.add(
+      'geom',
+      name=name,
+      type='mesh',
+      mesh=mesh,
+      rgba=rgba,
+      pos=position_m,
+      contype=0,
+      conaffinity=0,
+    )
+
+  def _add_lights(self) -> None:
+    root = self._mjcf_root
+    gain = self._look.brightness
+    root.visual.headlight.set_attributes(
+      ambient=(gain * _AMBIENT,) * 3,
+      diffuse=(gain * _HEADLIGHT,) * 3,
+      specular=(0.0, 0.0, 0.0),
+    )
+    for name, (direction, brightness) in _LIGHTS.items():
+      root.worldbody.add(
+        'light',
+        name=name,
+        type='directional',
+        pos=(0.0, 0.0, 4.0),
+        dir=direction,
+        diffuse=(gain * brightness,) * 3,
+        specular=(0.0, 0.0, 0.0),
+        castshadow=self._look.shadows and name == 'key',
+      )

@@ -23,7 +23,7 @@ _ATTITUDE_RAD_S = 25.0
 _THRUST_N = (0.0, 0.35)
 _SIDEWAYS_N = (-0.0964, 0.0964)
 _TORQUE_NM = (-5e-3, 5e-3)
-_GRAVITY_MPS2 = 9.81
+_LIFT_MPS2 = np.array([0.0, 0.0, 9.81])
 
 _STIFFNESS_N_M = crazyflie.MASS_KG * _POSITION_RAD_S**2
 _DAMPING_NS_M = 2 * crazyflie.MASS_KG * _POSITION_RAD_S
@@ -43,15 +43,16 @@ class Controller:
     Args:
       root: The model that the vehicle is attached to.
       vehicle: The attached vehicle.
-      yaw_rad: The heading around which yaw is controlled, within pi.
+      yaw_rad: The heading from which turns are counted.
     """
-    self._home_yaw_rad = yaw_rad
     half_rad = yaw_rad / 2
     name = vehicle.mjcf_model.model
     home = root.worldbody.add(
-      'site', name=f'{name}_heading', group=3,
+      'site',
+      name=f'{name}_heading',
+      group=3,
       quat=(math.cos(half_rad), 0, 0, math.sin(half_rad)),
-    )  # fmt: skip
+    )
     world = root.find('site', 'world') or root.worldbody.add(
       'site', name='world', group=3
     )
@@ -59,15 +60,26 @@ class Controller:
     forces = (_SIDEWAYS_N, _SIDEWAYS_N, _THRUST_N)
     for axis, limits in enumerate(forces):
       self._add(
-        root, vehicle, world, f'{name}_force_{"xyz"[axis]}', axis,
-        _STIFFNESS_N_M, _DAMPING_NS_M, limits,
-      )  # fmt: skip
+        root,
+        vehicle,
+        world,
+        f'{name}_force_{"xyz"[axis]}',
+        axis,
+        _STIFFNESS_N_M,
+        _DAMPING_NS_M,
+        limits,
+      )
     for axis, inertia in enumerate(crazyflie.INERTIA_KG_M2):
       self._add(
-        root, vehicle, home, f'{name}_torque_{"xyz"[axis]}', axis + 3,
-        inertia * _ATTITUDE_RAD_S**2, 2 * inertia * _ATTITUDE_RAD_S,
+        root,
+        vehicle,
+        home,
+        f'{name}_torque_{"xyz"[axis]}',
+        axis + 3,
+        inertia * _ATTITUDE_RAD_S**2,
+        2 * inertia * _ATTITUDE_RAD_S,
         _TORQUE_NM,
-      )  # fmt: skip
+      )
 
   def _add(
     self,
@@ -84,11 +96,17 @@ class Controller:
     gear[axis] = 1.0
     self._actuators.append(
       root.actuator.add(
-        'general', name=name, site=vehicle.centre, refsite=frame, gear=gear,
-        gainprm=[stiffness], biastype='affine',
-        biasprm=[0, -stiffness, -damping], forcelimited=True,
+        'general',
+        name=name,
+        site=vehicle.centre,
+        refsite=frame,
+        gear=gear,
+        gainprm=[stiffness],
+        biastype='affine',
+        biasprm=[0, -stiffness, -damping],
+        forcelimited=True,
         forcerange=limits,
-      )  # fmt: skip
+      )
     )
 
   def command(
@@ -97,7 +115,7 @@ class Controller:
     position_m: np.ndarray,  # (3,)
     velocity_mps: np.ndarray,  # (3,)
     acceleration_mps2: np.ndarray,  # (3,)
-    yaw_rad: float,
+    turn_rad: float = 0.0,
   ) -> None:
     """Sets the reference for the coming control step.
 
@@ -109,13 +127,10 @@ class Controller:
       position_m: World position.
       velocity_mps: World velocity.
       acceleration_mps2: World acceleration.
-      yaw_rad: Heading, any number of turns.
+      turn_rad: Heading, counted from the vehicle's own, within pi.
     """
-    force_n = crazyflie.MASS_KG * acceleration_mps2
-    force_n[2] += crazyflie.MASS_KG * _GRAVITY_MPS2
+    force_n = crazyflie.MASS_KG * (acceleration_mps2 + _LIFT_MPS2)
     pull_m = (
-      position_m
-      + (_DAMPING_NS_M * velocity_mps + force_n) / _STIFFNESS_N_M
+      position_m + (_DAMPING_NS_M * velocity_mps + force_n) / _STIFFNESS_N_M
     )
-    turn_rad = math.remainder(yaw_rad - self._home_yaw_rad, math.tau)
     physics.bind(self._actuators).ctrl = [*pull_m, 0.0, 0.0, turn_rad]

@@ -8,8 +8,7 @@ boundaries"); the shape is drawn in `airframe`.
 
 from collections.abc import Sequence
 
-from dm_control import composer
-from dm_control import mjcf
+from dm_control import composer, mjcf
 from dm_control.composer.observation import observable
 import numpy as np
 
@@ -24,6 +23,7 @@ ROTOR_RADIUS_M = airframe.ROTOR_RADIUS_M
 DIAMETER_M = 2.0 * (ARM_M + ROTOR_RADIUS_M)  # Rotor tip to rotor tip.
 
 AMBER = (0.95, 0.62, 0.10, 1.0)
+AZURE = (0.16, 0.60, 0.95, 1.0)
 
 
 class Crazyflie(composer.Entity):
@@ -39,8 +39,8 @@ class Crazyflie(composer.Entity):
     """Builds the model.
 
     Args:
-      name: model name, the prefix of everything inside it.
-      accent_rgba: colour of the front rotors and the battery's label, 4 values
+      name: Model name, the prefix of everything inside it.
+      accent_rgba: Colour of the front rotors and the battery's label, 4 values
         in [0, 1]; tells vehicles apart.
     """
     self._mjcf_root = mjcf.RootElement(model=name)
@@ -51,7 +51,7 @@ class Crazyflie(composer.Entity):
     self._centre = self._airframe.add(
       'site', name='centre', pos=(0, 0, 0), size=(0.001,), group=3
     )
-    airframe.draw(self._mjcf_root, self._airframe, accent_rgba)
+    airframe.draw(self._airframe, accent_rgba)
     airframe.enclose(self._airframe)
     self._velocity = self._mjcf_root.sensor.add(
       'framelinvel', name='velocity', objtype='site', objname=self._centre
@@ -62,6 +62,7 @@ class Crazyflie(composer.Entity):
 
   @property
   def mjcf_model(self) -> mjcf.RootElement:
+    """The model; `name` is its prefix in a room."""
     return self._mjcf_root
 
   @property

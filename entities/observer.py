@@ -2,8 +2,7 @@
 
 from collections.abc import Callable
 
-from dm_control import composer
-from dm_control import mjcf
+from dm_control import composer, mjcf
 from dm_control.composer.observation import observable
 import numpy as np
 

@@ -19,7 +19,6 @@ _SAMPLES = 2  # Samples per pixel along each axis.
 # Past this share of the picture a full render is cheaper than windows.
 _LARGEST_SHARE = 0.25
 _HIDDEN_GROUP = 5  # Not drawn by default (MuJoCo, mjvOption.geomgroup).
-_FLAGS_OFF = (mujoco.mjtRndFlag.mjRND_SHADOW,)
 # Bodies and cameras that moved less than this since they were drawn are at
 # rest: 1e-6 m or rad is under a thousandth of a pixel at half a metre.
 _STILL = 1e-6
@@ -27,7 +26,7 @@ _STILL = 1e-6
 _LOOKS = (
   'geom_rgba', 'geom_size', 'geom_matid', 'mat_rgba', 'mat_texrepeat',
   'cam_fovy', 'light_active', 'light_diffuse', 'light_ambient', 'light_pos',
-  'light_dir',
+  'light_dir', 'light_castshadow', 'mat_reflectance',
 )  # fmt: skip
 
 Window = tuple[int, int, int, int]  # left, top, right, bottom in pixels.
@@ -72,8 +71,6 @@ class Renderer:
         f' {_SAMPLES * WIDTH} and {_SAMPLES * HEIGHT}: got {buffer}'
       )
     self._scene = mujoco.MjvScene(model, max(model.ngeom, 1) + 100)
-    for flag in _FLAGS_OFF:
-      self._scene.flags[flag] = False
     self._option = mujoco.MjvOption()
     self._perturb = mujoco.MjvPerturb()
     self._camera = mujoco.MjvCamera()
@@ -158,11 +155,14 @@ class Renderer:
   def _needs_whole(self, canvas: _Canvas, camera: np.ndarray) -> bool:
     """The rule of the full render: nothing kept may be out of date.
 
-    A picture is drawn whole the first time, when its camera has moved, and
-    when the model's looks changed.
+    A picture is drawn whole the first time, when its camera has moved, when
+    the model's looks changed, and always in a scene with shadows or
+    reflections, as those of a moving body fall outside its own window.
     """
+    model = self._model
     return (
       canvas.poses is None
+      or bool(model.light_castshadow.any() or model.mat_reflectance.any())
       or canvas.looks != self._looks_version
       or bool(np.abs(canvas.camera - camera).max() > _STILL)
     )

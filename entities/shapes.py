@@ -17,8 +17,8 @@ class Solid:
   """A closed surface.
 
   Attributes:
-    vertices_m: corners, (V, 3) float64.
-    faces: three indices into the corners a triangle, (F, 3) int.
+    vertices_m: Corners, (V, 3) float64.
+    faces: Three indices into the corners a triangle, (F, 3) int.
   """
 
   vertices_m: np.ndarray
@@ -97,8 +97,30 @@ def box(
 
 def turned(profile_m: Sequence[tuple[float, float]], sides: int) -> Solid:
   """Turns a profile of (radius, z), bottom to top, about z."""
-  angles = 2.0 * math.pi * np.arange(sides) / sides
-  circle = np.stack([np.cos(angles), np.sin(angles)], axis=1)  # (sides, 2)
-  return loft(
-    np.stack([np.insert(r * circle, 2, z, axis=1) for r, z in profile_m])
+  return loft(np.stack([_circle(r, z, sides) for r, z in profile_m]))
+
+
+def hoop(
+  inner_m: float, outer_m: float, low_m: float, high_m: float, sides: int
+) -> Solid:
+  """A ring of rectangular section about z, 8 triangles a side."""
+  section = ((inner_m, low_m), (outer_m, low_m), (outer_m, high_m),
+             (inner_m, high_m))  # fmt: skip
+  circles = np.stack([_circle(r, z, sides) for r, z in section])
+  corner = np.arange(4 * sides).reshape(4, sides)
+  following, outer = np.roll(corner, -1, axis=1), np.roll(corner, -1, axis=0)
+  far = np.roll(following, -1, axis=0)
+  faces = [(corner, following, far), (corner, far, outer)]
+  return Solid(
+    circles.reshape(-1, 3),
+    np.concatenate([np.stack(f, axis=-1).reshape(-1, 3) for f in faces]),
+  )
+
+
+def _circle(radius_m: float, z_m: float, sides: int) -> np.ndarray:
+  """Returns corners of a regular polygon, (sides, 3)."""
+  angle = 2.0 * math.pi * np.arange(sides) / sides
+  return np.stack(
+    [radius_m * np.cos(angle), radius_m * np.sin(angle), 0.0 * angle + z_m],
+    axis=1,
   )

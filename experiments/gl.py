@@ -86,4 +86,4 @@ def problem(timeout_s: float = TIMEOUT_S) -> str | None:
     return None
   backend = os.environ.get('MUJOCO_GL', '(unset)')
   line = mend(os.environ, error)
-  return f'cannot render with MUJOCO_GL={backend}: {error} Mend it: {line}'
+  return f'cannot render with MUJOCO_GL={backend} ({error}); mend it: {line}'

@@ -9,9 +9,9 @@ Exit status: what `main` returns (None is 0), 2 on bad input, 130 on Ctrl-C.
 """
 
 from collections.abc import Sequence
-import difflib
 import importlib
 import pathlib
+import re
 import sys
 import textwrap
 import types
@@ -26,6 +26,7 @@ INTERRUPTED = 130
 
 _COLUMN = 28  # Where the text about a flag starts.
 _WIDTH = 80
+_PLAIN = ('', 'a number', 'an integer')  # A default already shows these.
 
 # Flags defined through this module belong to the launcher that asked for them.
 flags.disclaim_key_flags()
@@ -71,14 +72,18 @@ def run(
     line, status = gl.problem(), BAD_INPUT
     if line is None:
       raise
+    # Contexts that were never made complain again when they are dropped.
+    sys.unraisablehook = lambda unraisable: None
   print(f'{program}: {line}', file=sys.stderr)
   return status
 
 
-def did_you_mean(word: str, choices: Sequence[str]) -> str:
-  """Returns a question that lists the choices close to a word, or nothing."""
-  close = difflib.get_close_matches(word, choices)
-  return f' Did you mean {" or ".join(close)}?' if close else ''
+def given_flags() -> list[str]:
+  """Returns the flags that the user gave, as they would be written again."""
+  given = [
+    flags.FLAGS[name] for name in flags.FLAGS if flags.FLAGS[name].present
+  ]
+  return sorted(flag.serialize() for flag in given)
 
 
 def help_text(program: str, module: types.ModuleType) -> str:
@@ -98,7 +103,7 @@ def _flag_lines(flag: flags.Flag) -> list[str]:
     default = '' if flag.default is None else flag.default_as_str.strip("'")
     head = f'--{flag.name}={default}'
     rule = flag.parser.syntactic_help
-    text = f'{flag.help} ({rule})' if rule else flag.help
+    text = f'{flag.help} ({rule})' if rule not in _PLAIN else flag.help
   indent = ' ' * _COLUMN
   body = textwrap.wrap(
     text, _WIDTH, initial_indent=indent, subsequent_indent=indent
@@ -114,10 +119,19 @@ def _parse(argv: Sequence[str], module: types.ModuleType) -> list[str]:
   except flags.UnrecognizedFlagError as error:
     own = flags.FLAGS.get_key_flags_for_module(module)
     wrong = f'--{error.flagname}'
-    hint = did_you_mean(wrong, [f'--{flag.name}' for flag in own])
+    hint = errors.did_you_mean(wrong, [f'--{flag.name}' for flag in own])
     raise flags.Error(
       f'unknown flag {wrong}.{hint} --help lists the flags.'
     ) from None
+  except flags.IllegalFlagValueError as error:
+    raise flags.Error(_with_rule(str(error))) from None
   if len(rest) > 1:
     raise flags.Error(f'takes only flags, --name=value: got {rest[1]!r}.')
   return rest
+
+
+def _with_rule(line: str) -> str:
+  """Adds what the flag takes to an error that tells only what Python said."""
+  name = re.match(r'flag --(\w+)', line)[1]
+  rule = flags.FLAGS[name].parser.syntactic_help
+  return line if rule in line else f'{line}; it takes {rule}'

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 import sys
 
 import waggle_tasks
+from waggle_tasks import errors
 from waggle_tasks.experiments import launch
 
 # Name of a module in this folder -> what it does, in one line.
@@ -32,7 +33,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     print(f'waggle {waggle_tasks.__version__}')
     return 0
   if name not in COMMANDS:
-    hint = launch.did_you_mean(name, list(COMMANDS))
+    hint = errors.did_you_mean(name, list(COMMANDS))
     print(
       f'waggle: unknown command {name!r}, must be one of '
       f'{sorted(COMMANDS)}.{hint}',

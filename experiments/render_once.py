@@ -38,10 +38,11 @@ def render() -> dict[str, str | float]:
     times_s.append(time.perf_counter() - start_s)
   if frame.min() == frame.max():
     raise RuntimeError('the frame came back in a single colour')
-  backend = type(physics.contexts.gl).__name__
-  renderer = GL.glGetString(GL.GL_RENDERER)
+  context = physics.contexts.gl
+  with context.make_current() as executor:
+    renderer = executor.call(GL.glGetString, GL.GL_RENDERER)
   return {
-    'backend': backend.removesuffix('Context').lower(),
+    'backend': type(context).__name__.removesuffix('Context').lower(),
     'renderer': renderer.decode() if renderer else 'unnamed renderer',
     'first_s': times_s[0],
     'frame_s': times_s[1],

@@ -1,5 +1,6 @@
 """`waggle doctor`: what it checks, and that each failure names its mend."""
 
+import itertools
 import os
 import pathlib
 import subprocess
@@ -31,7 +32,7 @@ def failures(report: str) -> dict[str, str]:
   lines = report.splitlines()
   return {
     line.removeprefix('FAIL  '): after.strip().removeprefix('mend it: ')
-    for line, after in zip(lines, lines[1:], strict=False)
+    for line, after in itertools.pairwise(lines)
     if line.startswith('FAIL')
   }
 

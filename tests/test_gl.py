@@ -86,10 +86,10 @@ def test_a_machine_that_renders_has_no_problem() -> None:
 @pytest.mark.parametrize(
   ('name', 'value', 'words'),
   [
-    ('MUJOCO_GL', 'nope', "got 'nope'. Mend it: export MUJOCO_GL=egl"),
-    ('MUJOCO_GL', 'disable', 'No OpenGL rendering backend is available. '),
-    ('MUJOCO_EGL_DEVICE_ID', '99', 'Mend it: unset MUJOCO_EGL_DEVICE_ID'),
-    ('PYOPENGL_PLATFORM', 'glx', 'Mend it: unset PYOPENGL_PLATFORM'),
+    ('MUJOCO_GL', 'nope', "got 'nope'.); mend it: export MUJOCO_GL=egl"),
+    ('MUJOCO_GL', 'disable', 'No OpenGL rendering backend is available.); '),
+    ('MUJOCO_EGL_DEVICE_ID', '99', 'mend it: unset MUJOCO_EGL_DEVICE_ID'),
+    ('PYOPENGL_PLATFORM', 'glx', 'mend it: unset PYOPENGL_PLATFORM'),
   ],
 )
 def test_a_setting_that_cannot_render_is_named_in_one_line(

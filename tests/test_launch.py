@@ -70,8 +70,8 @@ def test_help_shows_flags_in_order_with_defaults_and_rules(toy: Launch) -> None:
     'A second paragraph.\n'
     '\n'
     'flags:\n'
-    '  --do=nothing              What to do. (<nothing|fail>)\n'
-    '  --width_m=1.5             Width of the toy, m. Positive. (a number)\n'
+    '  --do=nothing              <nothing|fail>: What to do.\n'
+    '  --width_m=1.5             Width of the toy, m. Positive.\n'
     '  --count=                  Toys. (a positive integer)\n'
     '  --[no]loud                Whether to shout. (default: false)\n'
     '  --a_name_as_long_as_it_gets=x\n'
@@ -106,6 +106,11 @@ def test_main_reads_its_flags(toy: Launch) -> None:
   assert child.stdout == 'fail 2.0 None True\n'
 
 
+def test_given_flags_are_those_of_the_command_line(toy: Launch) -> None:
+  child = toy('print(launch.given_flags())', '--width_m', '2', '--do=nothing')
+  assert child.stdout == "['--do=nothing', '--width_m=2.0']\n"
+
+
 @pytest.mark.parametrize(
   ('body', 'line', 'status'),
   [
@@ -127,6 +132,11 @@ def test_what_a_user_did_is_one_line_on_stderr(
   ('argument', 'line'),
   [
     ('--do=dance', 'flag --do=dance: value should be one of <nothing|fail>'),
+    (
+      '--count=two',
+      "flag --count=two: invalid literal for int() with base 10: 'two'; "
+      'it takes a positive integer',
+    ),
     ('--count=0', 'flag --count=0: 0 is not a positive integer'),
     ('--widht_m=2', 'unknown flag --widht_m. Did you mean --width_m?'),
   ],
@@ -138,6 +148,7 @@ def test_a_bad_flag_never_reaches_main(
   assert (child.returncode, child.stdout) == (2, '')
   (said,) = child.stderr.splitlines()
   assert said.startswith(f'waggle toy: {line}')
+  assert said.count('positive integer') <= 1
 
 
 def test_a_mistake_of_ours_keeps_its_traceback(toy: Launch) -> None:
@@ -154,9 +165,25 @@ def test_a_machine_that_cannot_render_is_told_so_in_one_line(
   assert child.returncode == 2
   (said,) = child.stderr.splitlines()
   assert said == (
-    'waggle toy: cannot render with MUJOCO_GL=egl: ImportError: Cannot '
-    'initialize a headless EGL display. Mend it: unset '
+    'waggle toy: cannot render with MUJOCO_GL=egl (ImportError: Cannot '
+    'initialize a headless EGL display.); mend it: unset '
     '__EGL_VENDOR_LIBRARY_FILENAMES'
+  )
+
+
+def test_a_renderer_without_a_display_ends_with_the_line_that_mends_it(
+  toy: Launch,
+) -> None:
+  body = (
+    'from dm_control import mujoco; '
+    "mujoco.Physics.from_xml_string('<mujoco/>').render(8, 8)"
+  )
+  child = toy(body, MUJOCO_GL='glfw', DISPLAY='', WAYLAND_DISPLAY='')
+  assert child.returncode == 2
+  assert 'Traceback' not in child.stderr
+  assert child.stderr.endswith(
+    'waggle toy: cannot render with MUJOCO_GL=glfw (FatalError: gladLoadGL '
+    'error); mend it: export MUJOCO_GL=egl\n'
   )
 
 

@@ -6,7 +6,7 @@ backend where none would work, and names a broken pair of versions.
 
 import os
 import sys
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from waggle_tasks import runtime
 from waggle_tasks._version import __version__
@@ -22,7 +22,7 @@ if not runtime.reports_versions(sys.argv, sys.orig_argv):
   runtime.require_versions()
 
 
-def load(name: str, **changes: Any) -> 'composer.Environment':  # noqa: ANN401
+def load(name: str, **changes: object) -> 'composer.Environment':
   """Builds the environment of a named scenario.
 
   Args:

@@ -13,13 +13,13 @@ class AppearanceError(errors.WaggleError):
 
 @dataclasses.dataclass(frozen=True)
 class Appearance:
-  """What observers see around the performer.
+  """What is around the vehicles.
 
   Attributes:
-    floor: one of `FLOORS`.
-    brightness: scales every light, in (0, 2]; 1 is the room as designed.
-    shadows: whether lights cast shadows; off, so that an image can be put
-      together from parts.
+    floor: One of `FLOORS`.
+    brightness: Scales every light, 0.1 to 2; 1 is the room as designed.
+    shadows: Whether the main light casts shadows in the shared views; the
+      observers' own images never show any.
   """
 
   floor: str = 'honeycomb'
@@ -29,13 +29,13 @@ class Appearance:
   def __post_init__(self) -> None:
     if self.floor not in FLOORS:
       raise AppearanceError(
-        f'`floor` must be one of {list(FLOORS)}: got {self.floor!r}.'
+        f'`floor` must be one of {[*FLOORS]}: got {self.floor!r}'
       )
-    if not 0.0 < self.brightness <= 2.0:
+    if not 0.1 <= self.brightness <= 2.0:
       raise AppearanceError(
-        f'`brightness` must be in (0, 2]: got {self.brightness}.'
+        f'`brightness` must be between 0.1 and 2: got {self.brightness!r}'
       )
     if not isinstance(self.shadows, bool):
       raise AppearanceError(
-        f'`shadows` must be True or False: got {self.shadows!r}.'
+        f'`shadows` must be True or False: got {self.shadows!r}'
       )

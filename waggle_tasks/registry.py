@@ -1,13 +1,13 @@
 """Tasks by name, and how one is built from a scenario."""
 
 import dataclasses
-import difflib
 
 from dm_control import composer
 
 from waggle_tasks import scenario as scenario_lib
 from waggle_tasks.arenas import flight_room
 from waggle_tasks.entities import observer, performer
+from waggle_tasks.protocol import checks
 from waggle_tasks.tasks import broadcast, controls
 from waggle_tasks.tasks import parts as parts_lib
 
@@ -32,12 +32,11 @@ def find(name: str, **changes: object) -> Scenario:
     ScenarioError: if the name or a field is not known, with the close ones,
       or if a value breaks a rule.
   """
-  if name not in SCENARIOS:
-    raise scenario_lib.ScenarioError(_unknown('task', name, [*SCENARIOS]))
+  error = scenario_lib.ScenarioError
+  checks.choice('task', name, [*SCENARIOS], error)
   fields = [field.name for field in dataclasses.fields(Scenario)]
   for field in changes:
-    if field not in fields:
-      raise scenario_lib.ScenarioError(_unknown('field', field, fields))
+    checks.choice('field', field, fields, error)
   return dataclasses.replace(SCENARIOS[name], **changes)
 
 
@@ -92,11 +91,3 @@ def load(name: str, **changes: object) -> composer.Environment:
     ScenarioError: see `find`.
   """
   return environment(find(name, **changes))
-
-
-def _unknown(kind: str, name: str, known: list[str]) -> str:
-  close = difflib.get_close_matches(name, known, n=3, cutoff=0.4)
-  return (
-    f'`{kind}` must be one of {known}: got {name!r}'
-    + (f'; close: {close}' if close else '')
-  )

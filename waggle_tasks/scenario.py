@@ -129,9 +129,7 @@ class Scenario:
     for index, pose in enumerate(self._layout().poses(self.observers)):
       poses[f'observer_{index + 1}'] = pose
     # Two neighbours can come closer by the jitter of both.
-    layouts.check_spacing(
-      poses, safety.MINIMUM_SPACING_M + 2 * self.jitter_m
-    )
+    layouts.check_spacing(poses, safety.MINIMUM_SPACING_M + 2 * self.jitter_m)
     return poses
 
   def _layout(self) -> layouts.Layout:

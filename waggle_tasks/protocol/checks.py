@@ -1,5 +1,6 @@
 """Checks that configuration values share; each names the field it refuses."""
 
+from collections.abc import Sequence
 import math
 
 from waggle_tasks import errors
@@ -56,7 +57,7 @@ def integer(
 def choice(
   field: str,
   value: str,
-  choices: tuple[str, ...],
+  choices: Sequence[str],
   error: type[errors.WaggleError],
 ) -> None:
   """Refuses a value that is not one of the choices, and lists them.
@@ -65,4 +66,7 @@ def choice(
     WaggleError: of type `error`, naming the field, the value and the choices.
   """
   if value not in choices:
-    raise error(f'`{field}` must be one of {list(choices)}: got {value!r}')
+    hint = errors.did_you_mean(str(value), choices)
+    raise error(
+      f'`{field}` must be one of {[*map(str, choices)]}: got {value!r}.{hint}'
+    )

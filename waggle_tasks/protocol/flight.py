@@ -10,6 +10,9 @@ import numpy as np
 
 from waggle_tasks.protocol import minimum_jerk
 
+# Where everybody hovers and where a message leads to (paper, sections 'Scene,
+# sensors, and information boundaries' and 'Per-observer navigation').
+HOVER_HEIGHT_M = 1.3
 # With 3 s for the paper's 0.4 m, 'near and slow enough' begins after 2.742 s,
 # and 0.4 s later is the paper's arrival, 3.144 s after the final null
 # (98.784 s and 95.64 s, section 'Local faults and independent release').
@@ -36,9 +39,7 @@ class Flight:
   goal_m: np.ndarray
   begin_s: float
 
-  def motion(
-    self, time_s: float
-  ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+  def motion(self, time_s: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Position in m, velocity in m/s, acceleration in m/s^2, each (3,)."""
     return minimum_jerk.between(
       self.begin_m, self.goal_m, time_s - self.begin_s, DURATION_S

@@ -65,9 +65,7 @@ class Parser:
   state: State = State.LEAD_NULL
   bits: str = ''
 
-  def step(
-    self, symbol: Symbol
-  ) -> tuple['Parser', Message | Rejection | None]:
+  def step(self, symbol: Symbol) -> tuple['Parser', Message | Rejection | None]:
     """Takes one event.
 
     Args:

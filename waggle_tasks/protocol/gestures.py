@@ -146,7 +146,7 @@ class Codebook:
 
 
 def v_codebook(
-  half_width_m: float = 0.29,
+  half_width_m: float = 0.285,
   start_height_m: float = 0.62,
   duration_s: float = 7.5,
 ) -> Codebook:

@@ -7,9 +7,7 @@ equation 5: position, velocity and acceleration are zero-ended and smooth.
 import numpy as np
 
 
-def progress(
-  elapsed_s: float, duration_s: float
-) -> tuple[float, float, float]:
+def progress(elapsed_s: float, duration_s: float) -> tuple[float, float, float]:
   """How far along the way, and its two time derivatives.
 
   Args:

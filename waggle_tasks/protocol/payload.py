@@ -62,7 +62,8 @@ class Payload:
     Raises:
       PayloadError: if `bits` is not six characters of 0 and 1.
     """
-    if not isinstance(bits, str) or len(bits) != NUM_BITS or set(bits) - {*'01'}:
+    is_bits = isinstance(bits, str) and not set(bits) - {*'01'}
+    if not is_bits or len(bits) != NUM_BITS:
       raise PayloadError(
         f'`payload` must be {NUM_BITS} characters of 0 and 1, such as'
         f" '000010': got {bits!r}"

@@ -15,7 +15,8 @@ class Reference:
     position_m: (3,) world metres.
     velocity_mps: (3,) world m/s.
     acceleration_mps2: (3,) world m/s^2.
-    yaw_rad: Heading of the nose, counterclockwise from world +X.
+    turn_rad: Heading of the nose, counterclockwise from where it pointed at
+      the beginning of the episode.
     goal_m: (3,) where the motion comes to rest; the position itself when
       hovering. The safety checks judge the way to it.
   """
@@ -23,14 +24,14 @@ class Reference:
   position_m: np.ndarray
   velocity_mps: np.ndarray
   acceleration_mps2: np.ndarray
-  yaw_rad: float
+  turn_rad: float
   goal_m: np.ndarray
 
   @classmethod
-  def hover(cls, position_m: np.ndarray, yaw_rad: float) -> 'Reference':
-    """Rest at a place, (3,) world metres."""
+  def hover(cls, position_m: np.ndarray) -> 'Reference':
+    """Rest at a place, (3,) world metres, heading as at the beginning."""
     rest = np.zeros(3)
-    return cls(position_m, rest, rest, yaw_rad, position_m)
+    return cls(position_m, rest, rest, 0.0, position_m)
 
   @classmethod
   def from_array(cls, array: np.ndarray) -> 'Reference':
@@ -38,13 +39,13 @@ class Reference:
     return cls(array[:3], array[3:6], array[6:9], array[9], array[10:])
 
   def to_array(self) -> np.ndarray:
-    """(13,) position, velocity, acceleration, yaw, goal: an action."""
+    """(13,) position, velocity, acceleration, turn, goal: an action."""
     return np.concatenate(
       [
         self.position_m,
         self.velocity_mps,
         self.acceleration_mps2,
-        [self.yaw_rad],
+        [self.turn_rad],
         self.goal_m,
       ]
     )

@@ -48,9 +48,7 @@ class Schedule:
         return slot.gesture.symbol
     return Symbol.NULL
 
-  def motion(
-    self, time_s: float
-  ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+  def motion(self, time_s: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Where the dance is: minimum jerk from corner to corner.
 
     Args:

@@ -3,8 +3,7 @@
 from collections.abc import Mapping, Sequence
 import math
 
-from dm_control import composer
-from dm_control import mjcf
+from dm_control import composer, mjcf
 from dm_control.composer.observation import observable
 from dm_env import specs
 import numpy as np
@@ -114,7 +113,7 @@ class Broadcast(composer.Task):
     self._gates, self._progress = [], []
     for name in self._observers:
       home_m = np.array(self._homes[name].position_m)
-      hold = reference.Reference.hover(home_m, self._homes[name].yaw_rad)
+      hold = reference.Reference.hover(home_m)
       self._gates.append(safety.Gate(name, hold))
       target_m = home_m + displacement_m if self.sends_message else None
       self._progress.append(progress.Progress(home_m, target_m))
@@ -148,7 +147,7 @@ class Broadcast(composer.Task):
     motion = self.performer.motion(
       np.array(home.position_m), home.yaw_rad, middle_s
     )
-    self._controllers['performer'].command(physics, *motion, home.yaw_rad)
+    self._controllers['performer'].command(physics, *motion)
     wanted = self._references(action)
     self._judge(wanted, self.positions_m(physics), time_s)
     for gate, each in zip(self._gates, wanted, strict=True):
@@ -158,7 +157,7 @@ class Broadcast(composer.Task):
         followed.position_m,
         followed.velocity_mps,
         followed.acceleration_mps2,
-        followed.yaw_rad,
+        followed.turn_rad,
       )
 
   def _references(
@@ -236,12 +235,12 @@ class Broadcast(composer.Task):
 
   def positions_m(self, physics: mjcf.Physics) -> dict[str, np.ndarray]:
     """True position of every vehicle, (3,) world metres, by its name."""
-    positions = physics.bind(self._joints).qpos.reshape(-1, 7)[:, :3]
+    positions = np.array(physics.bind(self._joints).qpos).reshape(-1, 7)[:, :3]
     return dict(zip(self._vehicles, positions, strict=True))
 
   def velocities_mps(self, physics: mjcf.Physics) -> dict[str, np.ndarray]:
     """True velocity of every vehicle, (3,) world m/s, by its name."""
-    velocities = physics.bind(self._joints).qvel.reshape(-1, 6)[:, :3]
+    velocities = np.array(physics.bind(self._joints).qvel).reshape(-1, 6)[:, :3]
     return dict(zip(self._vehicles, velocities, strict=True))
 
   @property

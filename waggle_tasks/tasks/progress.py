@@ -55,9 +55,8 @@ class Progress:
     self._dwell_frames = self._dwell_frames + 1 if there else 0
     if self.arrived:
       self.held_frames = self.held_frames + 1 if there else 0
-    elif (
-      not self.trespassed
-      and self._dwell_frames > timing.frames(flight.ARRIVAL_DWELL_S)
+    elif not self.trespassed and self._dwell_frames > timing.frames(
+      flight.ARRIVAL_DWELL_S
     ):
       self.arrived = True
       return 1.0

@@ -130,7 +130,7 @@ class Gate:
     if reason := self._astray(wanted):
       self._refuse(time_s, reason)
     else:
-      self._hold = reference.Reference.hover(wanted.position_m, wanted.yaw_rad)
+      self._hold = reference.Reference.hover(wanted.position_m)
       return wanted
     return self._hold
 

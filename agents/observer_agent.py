@@ -1,0 +1,147 @@
+"""A receiver and a navigator together: what one observer runs."""
+
+from collections.abc import Mapping, Sequence
+import dataclasses
+import enum
+
+import numpy as np
+
+from waggle_tasks.agents import navigator as navigator_lib
+from waggle_tasks.agents import provenance, receiver, receivers
+from waggle_tasks.protocol import gestures, payload
+
+
+class Deed(enum.StrEnum):
+  """What a navigator did."""
+
+  START = 'navigation start'
+  ARRIVAL = 'arrival'
+
+
+@dataclasses.dataclass(frozen=True)
+class Navigation:
+  """Something that an observer did with its own message.
+
+  Attributes:
+    time_s: When.
+    deed: What.
+    target_m: Where its message leads to, world metres.
+    payload: The message.
+    images: How many images the receiver had seen.
+    provenance: Hash of those images and their times.
+  """
+
+  time_s: float
+  deed: Deed
+  target_m: tuple[float, float, float]
+  payload: payload.Payload
+  images: int
+  provenance: str
+
+
+class ObserverAgent:
+  """Reads its own images until it has a message, then flies it.
+
+  Attributes:
+    events: What it saw and did in this episode, in order.
+  """
+
+  def __init__(
+    self, reader: receiver.Receiver, navigator: navigator_lib.Navigator
+  ) -> None:
+    """Makes an agent at the beginning of an episode.
+
+    Args:
+      reader: Its receiver.
+      navigator: Its navigator.
+    """
+    self.receiver = reader
+    self._navigator = navigator
+    self._chain = provenance.Chain()
+    self._command: navigator_lib.Command | None = None
+    self.events: list[receiver.Event | Navigation] = []
+
+  def step(self, observation: Mapping[str, np.ndarray]) -> np.ndarray:
+    """Takes an observation and returns an action.
+
+    Args:
+      observation: `camera` (H, W, 3) uint8, `time_s` () and `position_m`
+        (3,).
+
+    Returns:
+      (13,) see `reference.Reference`.
+    """
+    time_s = float(observation['time_s'])
+    position_m = np.asarray(observation['position_m'])
+    if self._navigator.target_m is None:  # Navigating, it reads no more.
+      self._read(observation['camera'], position_m, time_s)
+    wanted = self._navigator.step(position_m, time_s)
+    if self._navigator.arrival_s == time_s:
+      self._note(Deed.ARRIVAL, time_s)
+    return wanted.to_array()
+
+  def _read(
+    self, image: np.ndarray, position_m: np.ndarray, time_s: float
+  ) -> None:
+    self._chain.add(image, time_s)
+    for event in self.receiver.step(image, time_s):
+      self.events.append(event)
+      if event.message is not None:
+        self._command = navigator_lib.Command(event.message, self._chain.digest)
+        self._navigator.accept(self._command, position_m, time_s)
+        self._note(Deed.START, time_s)
+
+  def _note(self, deed: Deed, time_s: float) -> None:
+    self.events.append(
+      Navigation(
+        time_s,
+        deed,
+        tuple(map(float, self._navigator.target_m)),
+        self._command.payload,
+        self._chain.images,
+        self._command.provenance,
+      )
+    )
+
+
+class Team:
+  """One agent for each observer; none of them sees another's images.
+
+  Attributes:
+    agents: In the order of observations and actions.
+  """
+
+  def __init__(
+    self,
+    count: int,
+    receiver_name: str = 'klt',
+    codebook: gestures.Codebook = gestures.v_codebook(),
+    units: payload.Units = payload.Units(),
+  ) -> None:
+    """Makes the agents at the beginning of an episode.
+
+    Args:
+      count: How many.
+      receiver_name: One of `receivers.RECEIVERS`.
+      codebook: The agreed gestures.
+      units: The agreed heading step and distance unit.
+
+    Raises:
+      ReceiverError: if the receiver is not known.
+    """
+    self.agents = tuple(
+      ObserverAgent(
+        receivers.make(receiver_name, codebook),
+        navigator_lib.Navigator(units),
+      )
+      for _ in range(count)
+    )
+
+  def step(
+    self, observations: Sequence[Mapping[str, np.ndarray]]
+  ) -> list[np.ndarray]:
+    """Takes one observation for each agent and returns their actions."""
+    return [
+      agent.step(observation)
+      for agent, observation in zip(self.agents, observations, strict=True)
+    ]

@@ -1,0 +1,114 @@
+"""Flies one dance; every observer reads it from its own camera and follows it.
+
+Prints a table with a line for each observer and the verdict on the group, and
+leaves a run folder: config.json, events.jsonl, result.json and
+provenance.json. Exit status 0 when the group passed, 1 when it did not, 2 on
+bad input.
+"""
+
+from collections.abc import Sequence
+import datetime
+import pathlib
+import sys
+
+from absl import flags
+import dm_env
+import tqdm
+
+from waggle_tasks import scenario
+from waggle_tasks.agents import observer_agent, receivers
+from waggle_tasks.experiments import (
+  evaluator,
+  launch,
+  provenance,
+  records,
+  scenario_flags,
+  table,
+)
+from waggle_tasks.experiments import rollout as rollout_lib
+from waggle_tasks.protocol import timing
+
+scenario_flags.define()
+_RECEIVER = flags.DEFINE_string(
+  'receiver',
+  'klt',
+  f'How observers read images. One of {", ".join(receivers.RECEIVERS)}.',
+)
+_OUTPUT = flags.DEFINE_string(
+  'output', None, 'Run folder to make; unset, the next runs/broadcast-N.'
+)
+
+
+def main(argv: Sequence[str]) -> int:
+  """Runs the scenario of the flags and returns the exit status."""
+  scene = scenario_flags.read()
+  receivers.make(_RECEIVER.value, scene.codebook)
+  folder = pathlib.Path(_OUTPUT.value or records.free_folder('broadcast'))
+  command = provenance.command_line('broadcast', launch.given_flags())
+  with records.new_folder(folder) as draft:
+    began = datetime.datetime.now(datetime.UTC)
+    rollout = _roll(scene, _RECEIVER.value)
+    verdict = evaluator.evaluate(scene, rollout)
+    records.write_run(
+      draft, scene, _RECEIVER.value, rollout, verdict,
+      provenance.Provenance.of(command, rollout.renderer, began),
+    )  # fmt: skip
+  print(report(scene, verdict))
+  print(f'Run folder: {folder}')
+  return 0 if verdict.passed else 1
+
+
+def _roll(scene: scenario.Scenario, receiver_name: str) -> rollout_lib.Rollout:
+  """Runs the episode behind a progress bar of simulated seconds."""
+  frames = timing.frames(scene.episode_s)
+  form = '{desc}: {percentage:3.0f}%|{bar}| {n:.0f}/{total:.0f} s'
+  with tqdm.tqdm(
+    total=frames * timing.FRAME_S, desc='broadcast', mininterval=0.5,
+    bar_format=form + ' simulated [{elapsed} < {remaining}]',
+  ) as bar:  # fmt: skip
+
+    def watch(timestep: dm_env.TimeStep, team: observer_agent.Team) -> None:
+      del team
+      if not timestep.first():
+        bar.update(timing.FRAME_S)
+
+    return rollout_lib.run(scene, receiver_name, [watch])
+
+
+def report(scene: scenario.Scenario, verdict: evaluator.Verdict) -> str:
+  """The table of observers and the verdict, for people."""
+  rows = [
+    (
+      each.observer,
+      each.expected or 'nothing',
+      each.decoded or '-',
+      table.number(each.end_s),
+      table.number(each.final_null_s),
+      table.number(each.start_s),
+      table.number(each.arrival_s),
+      table.number(each.error_m, 1, 1e3),
+      table.number(each.hold_s),
+      'FAIL' if each.failures else 'pass',
+    )
+    for each in verdict.outcomes
+  ]
+  header = (
+    'observer', 'sent', 'decoded', 'END s', 'final null s', 'start s',
+    'arrival s', 'error mm', 'hold s', 'checks',
+  )  # fmt: skip
+  lines = [table.render(header, rows), '']
+  for each in verdict.outcomes:
+    lines += [f'{each.observer}: {failure}' for failure in each.failures]
+  expecting = sum(each.expected is not None for each in verdict.outcomes)
+  lines.append(
+    f'Group {"passed" if verdict.passed else "FAILED"}: {verdict.correct} of'
+    f' {expecting} observers decoded {scene.payload}.'
+    if expecting
+    else f'Group {"passed" if verdict.passed else "FAILED"}: nothing was to be'
+    ' decoded.'
+  )
+  return '\n'.join(lines)
+
+
+if __name__ == '__main__':
+  sys.exit(launch.run(__name__))

@@ -1,0 +1,289 @@
+"""Scores an episode by truth and event logs, never by a navigator's word.
+
+The rules are those of the paper's section 'Metrics and provenance checks'.
+The expected displacement is calculated here from the bits that were sent, on
+purpose without the code that the navigators use.
+"""
+
+from collections.abc import Sequence
+import dataclasses
+import math
+
+import numpy as np
+
+from waggle_tasks import scenario
+from waggle_tasks.agents import observer_agent, receiver
+from waggle_tasks.experiments import rollout as rollout_lib
+from waggle_tasks.protocol import flight, timing
+from waggle_tasks.tasks import progress, safety
+
+# A message is eight motions between nine nulls (paper, section 'Motion
+# alphabet and message framing').
+NUM_EVENTS = 17
+NUM_NULLS = 9
+
+
+@dataclasses.dataclass(frozen=True)
+class Outcome:
+  """One observer's episode.
+
+  Attributes:
+    observer: Its name.
+    expected: The bits that it should have read, or None.
+    decoded: The bits that it read, or None.
+    end_s: When it recognised the END of that message.
+    final_null_s: When it confirmed the final null.
+    start_s: When its navigation began.
+    arrival_s: When it had stood at the place that was sent for 0.4 s.
+    error_m: How far from that place it was at the last frame.
+    hold_s: How long it stayed there after arriving.
+    failures: Every check that failed, with the reason; empty is a pass.
+    diagnosis: Where reading failed, for one without a message.
+  """
+
+  observer: str
+  expected: str | None
+  decoded: str | None = None
+  end_s: float | None = None
+  final_null_s: float | None = None
+  start_s: float | None = None
+  arrival_s: float | None = None
+  error_m: float | None = None
+  hold_s: float | None = None
+  failures: tuple[str, ...] = ()
+  diagnosis: str = ''
+
+  @property
+  def correct(self) -> bool:
+    """Whether it read what was sent to it."""
+    return self.expected is not None and self.decoded == self.expected
+
+
+@dataclasses.dataclass(frozen=True)
+class Verdict:
+  """The whole group's episode.
+
+  Attributes:
+    outcomes: One for each observer.
+    passed: Whether no check of any observer failed.
+  """
+
+  outcomes: tuple[Outcome, ...]
+
+  @property
+  def passed(self) -> bool:
+    """Whether no check of any observer failed."""
+    return not any(outcome.failures for outcome in self.outcomes)
+
+  @property
+  def correct(self) -> int:
+    """How many observers read what was sent to them."""
+    return sum(outcome.correct for outcome in self.outcomes)
+
+
+def expected_bits(scene: scenario.Scenario, number: int) -> str | None:
+  """What observer `number`, from 1, should read; None for nothing."""
+  if scene.control in ('no_send', 'interrupted'):
+    return None
+  if scene.control == 'black_input' and number == scene.black_observer:
+    return None
+  return scene.payload
+
+
+def expected_displacement_m(scene: scenario.Scenario) -> np.ndarray:
+  """Where the sent bits lead, (3,) metres: equations 1 and 2, by a table."""
+  bits = scene.payload
+  steps = [int(bit) for bit in bits]
+  turn_rad = (4 * steps[1] + 2 * steps[2] + steps[3]) * (
+    scene.units.heading_step_rad
+  )
+  reach_m = (2 * steps[4] + steps[5]) * scene.units.distance_unit_m
+  forward = reach_m if steps[0] == 0 else -reach_m
+  # Heading zero is +Y, and a counterclockwise turn leads towards -X.
+  return forward * np.array([-math.sin(turn_rad), math.cos(turn_rad), 0.0])
+
+
+def evaluate(scene: scenario.Scenario, rollout: rollout_lib.Rollout) -> Verdict:
+  """Scores every observer of an episode."""
+  outcomes = []
+  for number in range(1, scene.observers + 1):
+    name = f'observer_{number}'
+    expected = expected_bits(scene, number)
+    judge = _judge_waiting if expected is None else _judge_reading
+    outcomes.append(judge(scene, rollout, name, expected))
+  return Verdict(tuple(outcomes))
+
+
+def _judge_waiting(
+  scene: scenario.Scenario,
+  rollout: rollout_lib.Rollout,
+  name: str,
+  expected: None,
+) -> Outcome:
+  """An observer that must neither read a message nor move."""
+  del scene
+  failures = _contact(rollout, name)
+  message = _message(rollout.events[name])
+  if message is not None:
+    failures.append(f'message: read {message.message.bits}, nothing was sent')
+  start_s = _start_s(rollout.events[name])
+  if start_s is not None:
+    failures.append(f'navigation: started at {start_s:.2f} s')
+  failures += _early_motion(rollout, name, math.inf)
+  decoded = message.message.bits if message else None
+  return Outcome(
+    name, expected, decoded, start_s=start_s, failures=tuple(failures)
+  )
+
+
+def _judge_reading(
+  scene: scenario.Scenario,
+  rollout: rollout_lib.Rollout,
+  name: str,
+  expected: str,
+) -> Outcome:
+  """An observer that must read the message and fly it."""
+  events = rollout.events[name]
+  message = _message(events)
+  start_s = _start_s(events)
+  failures = _contact(rollout, name)
+  until_s = math.inf if start_s is None else start_s
+  failures += _early_motion(rollout, name, until_s)
+  if message is None:
+    why = diagnose(events)
+    return Outcome(
+      name, expected, start_s=start_s,
+      failures=(f'message: none, {why}', *failures), diagnosis=why,
+    )  # fmt: skip
+  seen = [e for e in events if isinstance(e, receiver.Event)]
+  frame_events = seen[: seen.index(message) + 1][-NUM_EVENTS:]
+  failures += _frame(frame_events, message.message.bits)
+  if message.message.bits != expected:
+    failures.append(f'message: read {message.message.bits}, sent {expected}')
+  if start_s != message.time_s:
+    failures.append(
+      f'release: navigation at {start_s} s, final null at {message.time_s} s'
+    )
+  failures += [
+    f'safety: {event.reason}'
+    for event in events
+    if isinstance(event, safety.Refusal)
+  ]
+  flown = _fly(scene, rollout, name, message.time_s)
+  failures += flown.pop('failures')
+  return Outcome(
+    name, expected, message.message.bits,
+    end_s=frame_events[-2].time_s if len(frame_events) > 1 else None,
+    final_null_s=message.time_s, start_s=start_s,
+    failures=tuple(failures), **flown,
+  )  # fmt: skip
+
+
+def _message(
+  events: Sequence[rollout_lib.Event],
+) -> receiver.Event | None:
+  for event in events:
+    if isinstance(event, receiver.Event) and event.message is not None:
+      return event
+  return None
+
+
+def _start_s(events: Sequence[rollout_lib.Event]) -> float | None:
+  for event in events:
+    if (
+      isinstance(event, observer_agent.Navigation)
+      and event.deed is observer_agent.Deed.START
+    ):
+      return event.time_s
+  return None
+
+
+def _contact(rollout: rollout_lib.Rollout, name: str) -> list[str]:
+  for time_s, pair in rollout.contacts:
+    if name in pair:
+      return [f'contact: {" and ".join(pair)} at {time_s:.2f} s']
+  return []
+
+
+def _early_motion(
+  rollout: rollout_lib.Rollout, name: str, until_s: float
+) -> list[str]:
+  """Whether it left its place before `until_s`."""
+  positions_m = rollout.positions_m[name]
+  away_m = np.linalg.norm(positions_m - positions_m[0], axis=1)
+  early = (away_m > progress.MOTION_M) & (rollout.times_s <= until_s)
+  if not early.any():
+    return []
+  first_s = rollout.times_s[early.argmax()]
+  return [f'premature motion: {away_m[early].max():.3f} m from {first_s:.2f} s']
+
+
+def _frame(events: Sequence[receiver.Event], bits: str) -> list[str]:
+  """Whether the events are the whole frame of a message, one by one."""
+  seen = [str(event.symbol) for event in events]
+  motions = ['START', *bits, 'END']
+  if seen[1::2] == motions and seen[::2] == ['NULL'] * NUM_NULLS:
+    return []
+  return [
+    f'frame: not the {NUM_EVENTS} events of {bits} with their {NUM_NULLS}'
+    f' nulls: {" ".join(seen)}'
+  ]
+
+
+def _fly(
+  scene: scenario.Scenario,
+  rollout: rollout_lib.Rollout,
+  name: str,
+  message_s: float,
+) -> dict[str, object]:
+  """Arrival and hold at the place that was sent, by true positions."""
+  positions_m, times_s = rollout.positions_m[name], rollout.times_s
+  begin = int(np.searchsorted(times_s, message_s - timing.FRAME_S / 2))
+  target_m = positions_m[begin] + expected_displacement_m(scene)
+  error_m = np.linalg.norm(positions_m - target_m, axis=1)
+  speed_mps = (
+    np.linalg.norm(
+      np.diff(positions_m, axis=0, prepend=positions_m[:1]), axis=1
+    )
+    / timing.FRAME_S
+  )
+  there = (error_m < flight.ARRIVAL_ERROR_M) & (
+    speed_mps < flight.ARRIVAL_SPEED_MPS
+  )
+  there[: begin + 1] = False
+  dwell = timing.frames(flight.ARRIVAL_DWELL_S)
+  arrival = next(
+    (k for k in range(begin + dwell, len(there)) if there[k - dwell : k].all()),
+    None,
+  )
+  last_m = float(error_m[-1])
+  if arrival is None:
+    reason = f'arrival: never, {last_m * 1e3:.1f} mm away at the end'
+    return {'error_m': last_m, 'failures': [reason]}
+  left = np.flatnonzero(error_m[arrival:] >= flight.ARRIVAL_ERROR_M)
+  stayed = int(left[0]) if left.size else len(there) - 1 - arrival
+  hold_s = stayed * timing.FRAME_S
+  failures = []
+  if hold_s < flight.HOLD_S - 1e-6:
+    failures.append(f'hold: {hold_s:.2f} s, under {flight.HOLD_S:g} s')
+  return {
+    'arrival_s': float(times_s[arrival]),
+    'error_m': last_m,
+    'hold_s': hold_s,
+    'failures': failures,
+  }
+
+
+def diagnose(events: Sequence[rollout_lib.Event]) -> str:
+  """Where reading failed: the first motion that was not understood."""
+  seen = [e for e in events if isinstance(e, receiver.Event)]
+  if not seen:
+    return 'no null was ever confirmed'
+  for number, event in enumerate(seen):
+    if event.symbol == 'UNKNOWN':
+      motions = sum(e.symbol != 'NULL' for e in seen[: number + 1])
+      return f'motion {motions} unknown: {event.recognition.reason}'
+  broken = next((e for e in seen if e.rejection), None)
+  if broken is not None:
+    return broken.rejection
+  return f'still waited for {seen[-1].state} at the end'

@@ -1,0 +1,96 @@
+"""What produced a result: versions, renderer, sources and the command."""
+
+from collections.abc import Sequence
+import dataclasses
+import datetime
+import functools
+import hashlib
+import importlib.metadata
+import pathlib
+import platform
+import shlex
+
+import waggle_tasks
+from waggle_tasks import agents, arenas, entities, experiments
+
+_DISTRIBUTIONS = (
+  'absl-py', 'dm-control', 'dm-env', 'mujoco', 'numpy',
+  'opencv-python-headless', 'scipy', 'tqdm',
+)  # fmt: skip
+
+
+def source_hashes() -> dict[str, str]:
+  """SHA-256 of every source file, by its name inside the package."""
+  out = {}
+  for package in (waggle_tasks, agents, arenas, entities, experiments):
+    folder = pathlib.Path(package.__file__).parent
+    for path in sorted(folder.rglob('*.py')):
+      name = package.__name__ + '/' + path.relative_to(folder).as_posix()
+      out[name] = hashlib.sha256(path.read_bytes()).hexdigest()
+  return out
+
+
+def source_digest(hashes: dict[str, str]) -> str:
+  """One SHA-256 over `source_hashes`."""
+  text = ''.join(f'{name} {value}\n' for name, value in sorted(hashes.items()))
+  return hashlib.sha256(text.encode()).hexdigest()
+
+
+@functools.cache
+def versions() -> dict[str, str]:
+  """Version of this package, of Python and of every dependency."""
+  out = {
+    'waggle-tasks': waggle_tasks.__version__,
+    'python': platform.python_version(),
+  }
+  for name in _DISTRIBUTIONS:
+    out[name] = importlib.metadata.version(name)
+  return out
+
+
+def renderer_name() -> str:
+  """The GL renderer of the context that is current, such as 'llvmpipe'."""
+  from OpenGL import GL
+
+  name = GL.glGetString(GL.GL_RENDERER)
+  return name.decode() if name else 'unknown'
+
+
+def command_line(command: str, argv: Sequence[str]) -> str:
+  """The shell line that runs a `waggle` command again."""
+  return shlex.join(['waggle', command, *argv])
+
+
+@dataclasses.dataclass(frozen=True)
+class Provenance:
+  """Where a result comes from.
+
+  Attributes:
+    command: The shell line that reproduces it.
+    renderer: The GL renderer.
+    versions: See `versions`.
+    source_digest: See `source_digest`.
+    sources: See `source_hashes`.
+    began: When, in UTC.
+    ended: When, in UTC.
+  """
+
+  command: str
+  renderer: str
+  versions: dict[str, str]
+  source_digest: str
+  sources: dict[str, str]
+  began: str
+  ended: str
+
+  @classmethod
+  def of(
+    cls, command: str, renderer: str, began: datetime.datetime
+  ) -> 'Provenance':
+    """The provenance of what has just ended."""
+    hashes = source_hashes()
+    ended = datetime.datetime.now(datetime.UTC)
+    return cls(
+      command, renderer, versions(), source_digest(hashes), hashes,
+      began.isoformat(timespec='seconds'), ended.isoformat(timespec='seconds'),
+    )  # fmt: skip

@@ -1,0 +1,148 @@
+"""Run folders: what an episode leaves behind, whole or not at all."""
+
+from collections.abc import Iterator, Mapping
+import contextlib
+import dataclasses
+import enum
+import json
+import os
+import pathlib
+import shutil
+
+import numpy as np
+
+from waggle_tasks import errors, scenario
+from waggle_tasks.experiments import evaluator, provenance
+from waggle_tasks.experiments import rollout as rollout_lib
+from waggle_tasks.protocol import payload
+
+
+class OutputError(errors.WaggleError):
+  """A folder that exists already or cannot be written."""
+
+
+def to_json(value: object) -> object:
+  """Turns configurations, events and arrays into what JSON can hold."""
+  match value:
+    case payload.Payload():
+      return value.bits
+    case enum.Enum():
+      return str(value)
+    case np.ndarray() | np.generic():
+      return value.tolist()
+    case Mapping():
+      return {str(key): to_json(each) for key, each in value.items()}
+    case list() | tuple():
+      return [to_json(each) for each in value]
+  if dataclasses.is_dataclass(value):
+    fields = {
+      field.name: to_json(getattr(value, field.name))
+      for field in dataclasses.fields(value)
+    }
+    return fields
+  return value
+
+
+def config(scene: scenario.Scenario, receiver_name: str) -> dict[str, object]:
+  """A run's configuration: every field of its scenario, and its receiver."""
+  fields = to_json(scene)
+  if not isinstance(scene.layout, str):
+    fields['layout'] = {type(scene.layout).__name__: fields['layout']}
+  return {'receiver': receiver_name, 'scenario': fields}
+
+
+def event_lines(rollout: rollout_lib.Rollout) -> Iterator[str]:
+  """The event log: one JSON object a line, in order of time and observer."""
+  rows = [
+    (event.time_s, name, event)
+    for name, events in rollout.events.items()
+    for event in events
+  ]
+  rows.sort(key=lambda row: row[0])  # Stable: observers keep their order.
+  for _, name, event in rows:
+    kind = type(event).__name__.lower()
+    yield dumps({'observer': name, 'kind': kind, **to_json(event)})
+
+
+def dumps(value: object) -> str:
+  """One line of JSON; NaN and infinity are refused."""
+  return json.dumps(to_json(value), allow_nan=False)
+
+
+@contextlib.contextmanager
+def new_folder(path: pathlib.Path) -> Iterator[pathlib.Path]:
+  """A folder that appears under its name only once it is complete.
+
+  Args:
+    path: Where it should be; its parents are made.
+
+  Yields:
+    A hidden folder beside it to write into. It is renamed when the block
+    ends, and removed when the block raises.
+
+  Raises:
+    OutputError: if `path` exists or cannot be written.
+  """
+  check_free(path)
+  draft = path.with_name(f'.{path.name}.{os.getpid()}.draft')
+  try:
+    draft.mkdir(parents=True)
+  except OSError as error:
+    raise _refused(path, error) from None
+  try:
+    yield draft
+    os.rename(draft, path)
+  except OSError as error:
+    raise _refused(path, error) from None
+  finally:
+    shutil.rmtree(draft, ignore_errors=True)
+
+
+def check_free(path: pathlib.Path) -> None:
+  """Refuses an output folder that exists or cannot be made, before work.
+
+  Raises:
+    OutputError: naming the folder and the reason.
+  """
+  if os.path.lexists(path):
+    raise OutputError(f'`output` must not exist yet: {path} does')
+  parent = next(p for p in path.absolute().parents if os.path.lexists(p))
+  if not parent.is_dir() or not os.access(parent, os.W_OK | os.X_OK):
+    raise OutputError(f'`output` must be writable: {parent} is not')
+
+
+def free_folder(stem: str) -> pathlib.Path:
+  """The first of runs/STEM-1, runs/STEM-2, ... that does not exist."""
+  number = 1
+  while os.path.lexists(path := pathlib.Path('runs', f'{stem}-{number}')):
+    number += 1
+  return path
+
+
+def write_run(
+  folder: pathlib.Path,
+  scene: scenario.Scenario,
+  receiver_name: str,
+  rollout: rollout_lib.Rollout,
+  verdict: evaluator.Verdict,
+  origin: provenance.Provenance,
+) -> None:
+  """Writes the files of a run; all but provenance.json repeat bit for bit."""
+  result = {'passed': verdict.passed, 'correct': verdict.correct}
+  texts = {
+    'config.json': pretty(config(scene, receiver_name)),
+    'events.jsonl': ''.join(f'{line}\n' for line in event_lines(rollout)),
+    'result.json': pretty({**result, 'outcomes': verdict.outcomes}),
+    'provenance.json': pretty(origin),
+  }
+  for name, text in texts.items():
+    (folder / name).write_text(text, encoding='utf-8')
+
+
+def pretty(value: object) -> str:
+  """A JSON file for people to read."""
+  return json.dumps(to_json(value), indent=2, allow_nan=False) + '\n'
+
+
+def _refused(path: pathlib.Path, error: OSError) -> OutputError:
+  return OutputError(f'`output` must be writable: {path}: {error.strerror}')

@@ -1,0 +1,96 @@
+"""Runs one episode: agents see observations, the record sees the truth."""
+
+from collections.abc import Callable, Sequence
+import dataclasses
+
+import dm_env
+import numpy as np
+
+from waggle_tasks import registry, scenario
+from waggle_tasks.agents import observer_agent, receiver
+from waggle_tasks.experiments import provenance
+from waggle_tasks.protocol import timing
+from waggle_tasks.tasks import safety
+
+Event = receiver.Event | observer_agent.Navigation | safety.Refusal
+# Called with each time step and the team, after the team has acted on it.
+Watcher = Callable[[dm_env.TimeStep, observer_agent.Team], None]
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class Rollout:
+  """What happened in an episode.
+
+  Attributes:
+    times_s: (T,) one time for each frame, from zero.
+    positions_m: By vehicle name, (T, 3) true positions.
+    contacts: Time and names of every pair that touched.
+    events: By observer name, what its agent saw and did, and what the safety
+      checks refused, in order of time.
+    renderer: The GL renderer that drew the images.
+  """
+
+  times_s: np.ndarray
+  positions_m: dict[str, np.ndarray]
+  contacts: tuple[tuple[float, tuple[str, str]], ...]
+  events: dict[str, tuple[Event, ...]]
+  renderer: str
+
+
+def run(
+  scene: scenario.Scenario,
+  receiver_name: str,
+  watchers: Sequence[Watcher] = (),
+) -> Rollout:
+  """Runs a scenario with a team of one receiver.
+
+  Args:
+    scene: The scenario.
+    receiver_name: One of `receivers.RECEIVERS`.
+    watchers: What else looks on; they cannot change what happens.
+
+  Raises:
+    WaggleError: if the receiver is not known.
+  """
+  team = observer_agent.Team(
+    scene.observers, receiver_name, scene.codebook, scene.units
+  )
+  environment = registry.environment(scene)
+  try:
+    return _run(environment, team, watchers)
+  finally:
+    environment.close()
+
+
+def _run(
+  environment: registry.composer.Environment,
+  team: observer_agent.Team,
+  watchers: Sequence[Watcher],
+) -> Rollout:
+  task, truth, contacts = environment.task, [], []
+  timestep = environment.reset()
+  physics = environment.physics  # Resetting may compile a new one.
+  while True:
+    truth.append(task.positions_m(physics))
+    time_s = (len(truth) - 1) * timing.FRAME_S
+    contacts += [(time_s, pair) for pair in task.contacts]
+    action = team.step(timestep.observation)
+    for watch in watchers:
+      watch(timestep, team)
+    if timestep.last():
+      break
+    timestep = environment.step(action)
+  events = {}
+  for each, agent in zip(task.observers, team.agents, strict=True):
+    name = each.mjcf_model.model
+    refused = [r for r in task.refusals if r.vehicle == name]
+    events[name] = tuple(
+      sorted([*agent.events, *refused], key=lambda event: event.time_s)
+    )
+  return Rollout(
+    np.arange(len(truth)) * timing.FRAME_S,
+    {name: np.stack([p[name] for p in truth]) for name in truth[0]},
+    tuple(contacts),
+    events,
+    provenance.renderer_name(),
+  )
