@@ -25,7 +25,7 @@ class Tracking:
   """
 
   box_px: int = 72
-  max_corners: int = 60
+  max_corners: int = 40
   corner_quality: float = 0.05
   corner_distance_px: float = 3.0
   window_px: int = 15

@@ -6,6 +6,7 @@ OpenCV, module video, calcOpticalFlowPyrLK).
 """
 
 import dataclasses
+import math
 
 import cv2
 import numpy as np
@@ -40,12 +41,60 @@ class Track:
     return f'forward-backward ratio {self.quality:.2f} < {config.min_quality}'
 
 
+@dataclasses.dataclass(frozen=True, eq=False)
+class _Patch:
+  """A grey square of an image.
+
+  Attributes:
+    left: Its first column in the image.
+    top: Its first row in the image.
+    grey: (h, w) uint8.
+    image_size: Width and height of the whole image.
+  """
+
+  left: int
+  top: int
+  grey: np.ndarray
+  image_size: tuple[int, int]
+
+  @classmethod
+  def of(cls, image: np.ndarray, centre_px: np.ndarray, side: int) -> '_Patch':
+    """Cuts a square, moved inwards where it would leave the image."""
+    size = image.shape[1], image.shape[0]
+    left, top = (
+      int(np.clip(centre - side / 2, 0, max(length - side, 0)))
+      for centre, length in zip(centre_px, size, strict=True)
+    )
+    square = image[top : top + side, left : left + side]
+    return cls(left, top, cv2.cvtColor(square, cv2.COLOR_RGB2GRAY), size)
+
+  @property
+  def origin_px(self) -> np.ndarray:
+    """(2,) float32 place of its first pixel in the image."""
+    return np.array([self.left, self.top], np.float32)
+
+  def crop(self, left: int, top: int, right: int, bottom: int) -> '_Patch':
+    """A part of it, given and clipped in image coordinates."""
+    height, width = self.grey.shape
+    left, top = max(left, self.left), max(top, self.top)
+    right = min(right, self.left + width)
+    bottom = min(bottom, self.top + height)
+    rows = slice(top - self.top, max(bottom, top) - self.top)
+    columns = slice(left - self.left, max(right, left) - self.left)
+    return _Patch(left, top, self.grey[rows, columns], self.image_size)
+
+
 class KltTracker:
-  """Follows one target that begins near the middle of the image."""
+  """Follows one target that begins near the middle of the image.
+
+  Work is confined to squares around the target: features are sought in one of
+  `box_px`, followed in one of twice that side, and one of three times that
+  side is kept for the next image.
+  """
 
   def __init__(self, config: config_lib.Tracking) -> None:
     self._config = config
-    self._grey: np.ndarray | None = None
+    self._last: _Patch | None = None
     self._time_s = -np.inf
     self._points = np.empty((0, 2), np.float32)
     self._centre_px: np.ndarray | None = None
@@ -55,63 +104,72 @@ class KltTracker:
     """Takes one image.
 
     Args:
-      image: (H, W, 3) uint8 RGB.
+      image: (H, W, 3) uint8 RGB; it is not kept.
       time_s: Its time, later than the last one's.
 
     Returns:
       The target in this image.
     """
-    grey = cv2.cvtColor(image, cv2.COLOR_RGB2GRAY)
+    config = self._config
+    if self._centre_px is None:
+      self._centre_px = np.array([image.shape[1], image.shape[0]]) / 2
+    patch = _Patch.of(image, self._centre_px, 3 * config.box_px)
     elapsed_s = time_s - self._time_s
-    if elapsed_s > self._config.max_gap_s:
+    if elapsed_s > config.max_gap_s:
       self._points = self._points[:0]  # Nothing to follow across a gap.
     followed = len(self._points)
     shift_px, support = np.zeros(2), 0
     if followed:
-      shift_px, support = self._follow(grey)
+      shift_px, support = self._follow(patch)
     quality = support / followed if followed else 0.0
-    valid = (
-      support >= self._config.min_support
-      and quality >= self._config.min_quality
-    )
+    valid = support >= config.min_support and quality >= config.min_quality
     if valid:
       self._centre_px = self._centre_px + shift_px
     else:
       self._points = self._points[:0]
-    self._replenish(grey)
-    self._grey, self._time_s = grey, time_s
-    speed_px_s = float(np.hypot(*shift_px)) / elapsed_s if valid else 0.0
+    if len(self._points) < config.redetect_below:
+      self._replenish(patch)
+    self._last, self._time_s = patch, time_s
+    speed_px_s = math.hypot(*shift_px) / elapsed_s if valid else 0.0
     return Track(
       time_s, self._centre_px.copy(), speed_px_s, support, quality, valid
     )
 
-  def _follow(self, grey: np.ndarray) -> tuple[np.ndarray, int]:
+  def _square(self, patch: _Patch, side_px: int) -> _Patch:
+    left, top = (int(c - side_px / 2) for c in self._centre_px)
+    return patch.crop(left, top, left + side_px, top + side_px)
+
+  def _follow(self, patch: _Patch) -> tuple[np.ndarray, int]:
     """Moves the features to the new image; the target's shift and support."""
     config = self._config
-    left, top, right, bottom = self._around(2 * config.box_px, grey.shape)
-    origin = np.array([left, top], np.float32)
-    before = self._grey[top:bottom, left:right]
-    after = grey[top:bottom, left:right]
+    before = self._square(self._last, 2 * config.box_px)
+    height, width = before.grey.shape
+    after = patch.crop(
+      before.left, before.top, before.left + width, before.top + height
+    )
+    if np.array_equal(before.grey, after.grey):
+      return np.zeros(2), len(self._points)  # Not a pixel has changed.
+    if before.grey.shape != after.grey.shape:
+      return np.zeros(2), 0  # It moved further than a patch reaches.
     flow = {
       'winSize': (config.window_px, config.window_px),
       'maxLevel': config.levels,
     }
-    start = (self._points - origin)[:, None]
+    start = (self._points - before.origin_px)[:, None]
     there, found, _ = cv2.calcOpticalFlowPyrLK(
-      before, after, start, None, **flow
+      before.grey, after.grey, start, None, **flow
     )
     back, returned, _ = cv2.calcOpticalFlowPyrLK(
-      after, before, there, None, **flow
+      after.grey, before.grey, there, None, **flow
     )
-    error_px = np.linalg.norm(back - start, axis=2)[:, 0]
-    there = there[:, 0] + origin
-    height, width = grey.shape
+    error_px = np.hypot(*(back - start)[:, 0].T)
+    there = there[:, 0] + before.origin_px
     kept = (
       (found[:, 0] == 1)
       & (returned[:, 0] == 1)
       & (error_px < config.forward_backward_px)
       & (there >= 0).all(1)
-      & (there < (width, height)).all(1)
+      & (there < patch.image_size).all(1)
     )
     if not kept.any():
       return np.zeros(2), 0
@@ -121,19 +179,17 @@ class KltTracker:
     self._points = there[kept][agree]
     return median.astype(float), int(agree.sum())
 
-  def _replenish(self, grey: np.ndarray) -> None:
-    """Finds new features around the target when few are left."""
+  def _replenish(self, patch: _Patch) -> None:
+    """Finds new features around the target."""
     config = self._config
-    if len(self._points) >= config.redetect_below:
+    square = self._square(patch, config.box_px)
+    if not square.grey.size:
       return
-    if self._centre_px is None:
-      self._centre_px = np.array(grey.shape[::-1]) / 2
-    left, top, right, bottom = self._around(config.box_px, grey.shape)
-    mask = np.full((bottom - top, right - left), 255, np.uint8)
-    for x, y in self._points - (left, top):
+    mask = np.full(square.grey.shape, 255, np.uint8)
+    for x, y in self._points - square.origin_px:
       cv2.circle(mask, (int(x), int(y)), int(config.corner_distance_px), 0, -1)
     corners = cv2.goodFeaturesToTrack(
-      grey[top:bottom, left:right],
+      square.grey,
       config.max_corners - len(self._points),
       config.corner_quality,
       config.corner_distance_px,
@@ -141,22 +197,8 @@ class KltTracker:
     )
     if corners is None:
       return
-    new = corners[:, 0] + np.array([left, top], np.float32)
+    new = corners[:, 0] + square.origin_px
     self._points = np.concatenate([self._points, new])
     if self.anchor_px is None and len(new) >= config.min_support:
       self._centre_px = np.median(new, axis=0).astype(float)
       self.anchor_px = self._centre_px.copy()
-
-  def _around(
-    self, side_px: int, shape: tuple[int, ...]
-  ) -> tuple[int, int, int, int]:
-    """A square around the target, inside the image: left, top, right, bottom.
-
-    Near an edge it is moved inwards, so that it never becomes too small.
-    """
-    out = []
-    for centre, size in zip(self._centre_px, shape[::-1], strict=True):
-      low = int(np.clip(centre - side_px / 2, 0, max(size - side_px, 0)))
-      out.append((low, min(low + side_px, size)))
-    (left, right), (top, bottom) = out
-    return left, top, right, bottom

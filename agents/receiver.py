@@ -33,7 +33,15 @@ class Event:
 
 
 class Receiver(Protocol):
-  """What every receiver can do; images and times are all that it gets."""
+  """What every receiver can do; images and times are all that it gets.
+
+  Attributes:
+    track: Where it saw the target in the last image, for people to look at.
+    segment: The motion that the last image ended, for the same; or None.
+  """
+
+  track: klt.Track | None
+  segment: segmenter.Segment | None
 
   def step(self, image: np.ndarray, time_s: float) -> tuple[Event, ...]:
     """Takes an image, (H, W, 3) uint8 RGB, and returns what it confirms."""
@@ -63,6 +71,7 @@ class KltReceiver:
     )
     self._parser = frame.Parser()
     self.track: klt.Track | None = None
+    self.segment: segmenter.Segment | None = None
 
   def step(self, image: np.ndarray, time_s: float) -> tuple[Event, ...]:
     """Takes one image, which is all that the receiver ever gets.
@@ -75,10 +84,10 @@ class KltReceiver:
       The events that this image confirms; mostly none.
     """
     self.track = self._tracker.step(image, time_s)
-    segment = self._segmenter.step(self.track)
+    self.segment = self._segmenter.step(self.track)
     events = []
-    if segment is not None:
-      recognition = self._recogniser.recognise(segment)
+    if self.segment is not None:
+      recognition = self._recogniser.recognise(self.segment)
       events.append(self._event(time_s, recognition.symbol, recognition))
     moving = self._segmenter.active
     if self._stillness.step(self.track, self._tracker.anchor_px, moving):

@@ -16,9 +16,9 @@ from typing import Protocol
 import numpy as np
 
 from waggle_tasks import errors
-from waggle_tasks.protocol import checks
+from waggle_tasks.protocol import checks, flight
 
-HOVER_HEIGHT_M = 1.3  # Paper, 'Scene, sensors, and information boundaries'.
+HOVER_HEIGHT_M = flight.HOVER_HEIGHT_M
 _MIN_DISTANCE_M, _MAX_DISTANCE_M = 0.001, 100.0
 
 
@@ -65,8 +65,8 @@ class Arc:
 
   Attributes:
     radius_m: Horizontal distance to the performer.
-    half_span_rad: Angle from the middle of the arc to its end, above 0 and up
-      to pi; a single observer is in the middle.
+    half_span_rad: Angle from the middle of the arc to its end, 0 to pi; a
+      single observer is in the middle.
   """
 
   radius_m: float = 1.3
@@ -75,8 +75,6 @@ class Arc:
   def __post_init__(self) -> None:
     _check_distance('radius_m', self.radius_m)
     checks.number('half_span_rad', self.half_span_rad, 0, math.pi, LayoutError)
-    if self.half_span_rad == 0:
-      raise LayoutError('`half_span_rad` must be above 0: got 0')
 
   def poses(self, count: int) -> tuple[Pose, ...]:
     """The poses of `count` observers, see the class."""

@@ -109,6 +109,10 @@ class Controller:
       )
     )
 
+  def after_compile(self, physics: mjcf.Physics) -> None:
+    """Finds the actuators in a compiled model."""
+    self._indices = physics.bind(self._actuators).element_id
+
   def command(
     self,
     physics: mjcf.Physics,
@@ -133,4 +137,4 @@ class Controller:
     pull_m = (
       position_m + (_DAMPING_NS_M * velocity_mps + force_n) / _STIFFNESS_N_M
     )
-    physics.bind(self._actuators).ctrl = [*pull_m, 0.0, 0.0, turn_rad]
+    physics.data.ctrl[self._indices] = [*pull_m, 0.0, 0.0, turn_rad]

@@ -25,7 +25,7 @@ class Observer(crazyflie.Crazyflie):
       name: Model name, the prefix of everything inside it.
       camera: One of `CAMERAS`: how its images are rendered.
     """
-    super()._build(name)
+    super()._build(name, crazyflie.AZURE)
     self._incremental = camera == 'incremental'
     self._eye = self.airframe.add(
       'camera', name='eye', pos=(eye.OFFSET_M, 0, 0),

@@ -1,5 +1,6 @@
 """Where layouts place vehicles, and which placements they refuse."""
 
+from collections.abc import Callable
 import dataclasses
 import itertools
 import math
@@ -71,7 +72,12 @@ def test_the_default_arc_is_the_papers() -> None:
 
 @pytest.mark.parametrize(
   ('count', 'x_m'),
-  [(1, [0]), (2, [-0.3, 0.3]), (3, [-0.6, 0, 0.6]), (4, [-0.9, -0.3, 0.3, 0.9])],
+  [
+    (1, [0]),
+    (2, [-0.3, 0.3]),
+    (3, [-0.6, 0, 0.6]),
+    (4, [-0.9, -0.3, 0.3, 0.9]),
+  ],
 )
 def test_a_line_lies_at_its_separation_and_is_centred(
   count: int, x_m: list[float]
@@ -93,7 +99,9 @@ def test_every_observer_looks_at_the_performance_area(
   for pose in poses:
     x, y, z = pose.position_m
     ahead = np.array([math.cos(pose.yaw_rad), math.sin(pose.yaw_rad)])
-    np.testing.assert_allclose(ahead, -np.array([x, y]) / math.hypot(x, y))
+    np.testing.assert_allclose(
+      ahead, (-x / math.hypot(x, y), -y / math.hypot(x, y)), atol=1e-12
+    )
     assert z == layouts.HOVER_HEIGHT_M == 1.3
 
 
@@ -147,7 +155,7 @@ def test_no_jitter_leaves_poses_as_they_are() -> None:
     (lambda: layouts.Arc(1e9), '`radius_m` must be between'),
     (lambda: layouts.Arc(math.nan), '`radius_m` must be a finite number: '),
     (lambda: layouts.Arc('1.3'), "`radius_m` must be a finite .* got '1.3'"),
-    (lambda: layouts.Arc(1.3, 0.0), '`half_span_rad` must be above 0: got 0'),
+    (lambda: layouts.Arc(1.3, -0.1), r'between 0 and 3.14159: got -0.1'),
     (lambda: layouts.Arc(1.3, 3.15), r'between 0 and 3.14159: got 3.15'),
     (lambda: layouts.Arc(1.3, math.nan), '`half_span_rad` must be a finite'),
     (lambda: layouts.Line(math.inf), '`separation_m` must be a finite number'),
@@ -170,7 +178,9 @@ def test_no_jitter_leaves_poses_as_they_are() -> None:
     ),
   ],
 )
-def test_values_that_make_no_sense_are_refused(make, error: str) -> None:
+def test_values_that_make_no_sense_are_refused(
+  make: Callable[[], object], error: str
+) -> None:
   with pytest.raises(layouts.LayoutError, match=error):
     make()
 
@@ -195,8 +205,7 @@ def named(poses: tuple[layouts.Pose, ...]) -> dict[str, layouts.Pose]:
     ),
     (
       layouts.Arc(0.15).poses(1),
-      'performer and observer_1 must start at least 0.160 m apart:'
-      ' got 0.150 m',
+      'performer and observer_1 must start at least 0.160 m apart: got 0.150 m',
     ),
   ],
 )

@@ -68,7 +68,7 @@ def test_joined_solids_keep_their_own_corners() -> None:
 
 
 @pytest.mark.parametrize(
-  'part', airframe.parts((1, 1, 1, 1)), ids=lambda part: part.name
+  'part', tuple(airframe.parts((1, 1, 1, 1))), ids=lambda part: part.name
 )
 def test_every_part_of_the_airframe_is_closed_and_faces_outwards(
   part: airframe.Part,

@@ -90,6 +90,14 @@ class Broadcast(composer.Task):
     ]
     return [{name: all_[name] for name in OBSERVATIONS} for all_ in everything]
 
+  def after_compile(
+    self, physics: mjcf.Physics, random_state: np.random.RandomState
+  ) -> None:
+    """Finds the vehicles' actuators in the compiled model."""
+    del random_state
+    for each in self._controllers.values():
+      each.after_compile(physics)
+
   def initialize_episode(
     self, physics: mjcf.Physics, random_state: np.random.RandomState
   ) -> None:
@@ -224,6 +232,8 @@ class Broadcast(composer.Task):
   def _find_contacts(
     self, physics: mjcf.Physics
   ) -> tuple[tuple[str, str], ...]:
+    if not physics.data.ncon:
+      return ()
     model, pairs = physics.model, set()
     for contact in physics.data.contact[: physics.data.ncon]:
       names = [
@@ -288,9 +298,9 @@ class Broadcast(composer.Task):
 
 def _bounds() -> tuple[np.ndarray, np.ndarray]:
   """Lowest and highest reference, (13,) each."""
-  half_m = flight_room.HALF_WIDTH_M
-  low_m = np.array([-half_m, -half_m, 0.0])
-  high_m = np.array([half_m, half_m, flight_room.HEIGHT_M])
+  room = flight_room
+  low_m = np.array([-room.HALF_WIDTH_M, -room.HALF_DEPTH_M, 0.0])
+  high_m = np.array([room.HALF_WIDTH_M, room.HALF_DEPTH_M, room.HEIGHT_M])
   speed = np.full(3, _MAX_SPEED_MPS)
   acceleration = np.full(3, _MAX_ACCELERATION_MPS2)
   return (
