@@ -246,17 +246,6 @@ class Renderer:
     corners = self._corners_m[parts] @ rotation.swapaxes(1, 2)  # (K, 8, 3)
     from_eye = corners + (data.xpos[bodies] - data.cam_xpos[camera_id])[:, None]
     in_eye = from_eye @ data.cam_xmat[camera_id].reshape(3, 3)
-    x, y, z = np.moveaxis(in_eye, -1, 0)  # (K, 8) each; it looks along -z.
     near = model.vis.map.znear * model.stat.extent
     focal_px = HEIGHT / 2 / np.tan(np.radians(model.cam_fovy[camera_id]) / 2)
-    depth = np.maximum(-z, near)
-    u = WIDTH / 2 + focal_px * x / depth
-    v = HEIGHT / 2 - focal_px * y / depth
-    out = np.stack(
-      [u.min(1) - 1, v.min(1) - 1, u.max(1) + 2, v.max(1) + 2], axis=1
-    )
-    in_front = (-z > near).any(1)
-    out[in_front & (-z < near).any(1)] = _WHOLE
-    out = np.clip(np.floor(out), 0, [WIDTH, HEIGHT, WIDTH, HEIGHT])
-    out[~in_front] = 0
-    return out.astype(int)
+    return windows.around(in_eye, near, focal_px, (WIDTH, HEIGHT))

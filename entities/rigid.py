@@ -5,7 +5,8 @@ import dataclasses
 import mujoco
 import numpy as np
 
-_SIGNS = np.array(np.meshgrid(*[(-1, 1)] * 3)).reshape(3, 8).T  # (8, 3)
+# Corner k is on the positive side of axis i when bit i of k is set.
+_SIGNS = np.array([[k >> i & 1 for i in range(3)] for k in range(8)]) * 2 - 1
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -15,7 +16,8 @@ class Part:
   Attributes:
     body: Index of the body that they move with; 0 for the world.
     geoms: (K,) their indices.
-    corners_m: (8, 3) the corners of a box around them, in the body's frame.
+    corners_m: (8, 3) the corners of a box around them, in the body's frame;
+      corner k is on the high side of axis i when bit i of k is set.
   """
 
   body: int

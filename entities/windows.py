@@ -2,6 +2,14 @@
 
 from collections.abc import Hashable, Mapping, Sequence
 
+import numpy as np
+
+# The twelve edges of a box whose corners count through the signs of x, y, z.
+_EDGES = np.array(
+  [(a, a | bit) for bit in (1, 2, 4) for a in range(8) if not a & bit]
+)
+_MARGIN_PX = 1
+
 Window = tuple[int, int, int, int]
 
 
@@ -43,3 +51,36 @@ def merge(
 
 def _union(a: Window, b: Window) -> Window:
   return min(a[0], b[0]), min(a[1], b[1]), max(a[2], b[2]), max(a[3], b[3])
+
+
+def around(
+  corners_m: np.ndarray, near_m: float, focal_px: float, size: tuple[int, int]
+) -> np.ndarray:
+  """Windows that hold boxes seen by a camera in the middle of a picture.
+
+  A box that reaches behind the near plane is cut off there.
+
+  Args:
+    corners_m: (K, 8, 3) in the camera's frame: x right, y up, looking along
+      -z; corners in the order of `rigid.Part`.
+    near_m: Distance of the near plane.
+    focal_px: Focal length.
+    size: Width and height of the picture.
+
+  Returns:
+    (K, 4) int; empty windows for boxes out of view.
+  """
+  begin, end = corners_m[:, _EDGES[:, 0]], corners_m[:, _EDGES[:, 1]]
+  depth_begin, depth_end = -begin[..., 2], -end[..., 2]  # (K, 12)
+  cut = (depth_begin > near_m) != (depth_end > near_m)
+  share = (near_m - depth_begin) / np.where(cut, depth_end - depth_begin, 1.0)
+  cuts = begin + share[..., None] * (end - begin)
+  points = np.concatenate([corners_m, cuts], axis=1)  # (K, 20, 3)
+  seen = np.concatenate([-corners_m[..., 2] > near_m, cut], axis=1)
+  depth = np.where(seen, -points[..., 2], 1.0)
+  places = points[..., :2] * (focal_px, -focal_px) / depth[..., None]
+  places += np.array(size) / 2  # (K, 20, 2)
+  low = np.where(seen[..., None], places, np.inf).min(axis=1) - _MARGIN_PX
+  high = np.where(seen[..., None], places, -np.inf).max(axis=1) + 1 + _MARGIN_PX
+  edges = np.concatenate([low, high], axis=1)
+  return np.clip(np.floor(edges), 0, [*size, *size]).astype(int)

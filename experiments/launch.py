@@ -88,7 +88,8 @@ def given_flags() -> list[str]:
 
 def help_text(program: str, module: types.ModuleType) -> str:
   """Returns a launcher's help: what it does, and its own flags only."""
-  lines = [f'usage: {program} [--flag=value ...]', '', module.__doc__.strip()]
+  usage = f'usage: {program} [--flag=value ...] {_takes(module)}'.rstrip()
+  lines = [usage, '', module.__doc__.strip()]
   lines += ['', 'flags:']
   for flag in flags.FLAGS.get_key_flags_for_module(module):
     lines += _flag_lines(flag)
@@ -125,9 +126,14 @@ def _parse(argv: Sequence[str], module: types.ModuleType) -> list[str]:
     ) from None
   except flags.IllegalFlagValueError as error:
     raise flags.Error(_with_rule(str(error))) from None
-  if len(rest) > 1:
+  if len(rest) > 1 and not _takes(module):
     raise flags.Error(f'takes only flags, --name=value: got {rest[1]!r}.')
   return rest
+
+
+def _takes(module: types.ModuleType) -> str:
+  """What a launcher takes beside flags, its ARGUMENTS; mostly nothing."""
+  return getattr(module, 'ARGUMENTS', '')
 
 
 def _with_rule(line: str) -> str:

@@ -128,7 +128,11 @@ def write_run(
   origin: provenance.Provenance,
 ) -> None:
   """Writes the files of a run; all but provenance.json repeat bit for bit."""
-  result = {'passed': verdict.passed, 'correct': verdict.correct}
+  result = {
+    'passed': verdict.passed,
+    'correct': verdict.correct,
+    'simulated_s': round(float(rollout.times_s[-1]), 2),
+  }
   texts = {
     'config.json': pretty(config(scene, receiver_name)),
     'events.jsonl': ''.join(f'{line}\n' for line in event_lines(rollout)),

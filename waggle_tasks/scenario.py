@@ -19,6 +19,13 @@ AFTERMATH_S = 12.0
 NO_SEND_S = 10.0  # Paper, section 'Controls and supplemental suite'.
 INTERRUPTED_S = 60.0  # The same.
 MAX_OBSERVERS = 64
+# Fields that are values of their own, and what makes one from plain numbers.
+PARTS = {
+  'codebook': gestures.v_codebook,
+  'pauses': timing.Timing,
+  'units': payload_lib.Units,
+  'appearance': appearance_lib.Appearance,
+}
 
 
 class ScenarioError(errors.WaggleError):
@@ -69,6 +76,13 @@ class Scenario:
   camera: str = 'incremental'
 
   def __post_init__(self) -> None:
+    for field in dataclasses.fields(self):
+      value = getattr(self, field.name)
+      if field.name in PARTS and type(value) is not type(field.default):
+        raise ScenarioError(
+          f'`{field.name}` must be a {type(field.default).__name__}:'
+          f' got {value!r}'
+        )
     checks.choice('control', self.control, CONTROLS, ScenarioError)
     checks.choice('camera', self.camera, observer.CAMERAS, ScenarioError)
     integers = {

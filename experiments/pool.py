@@ -1,0 +1,169 @@
+"""Spawned worker processes that are watched, and replaced when they fail.
+
+Processes are spawned: a fork after a GL context exists hangs. Each worker
+does one job at a time and says from time to time that it is alive. One that
+dies, or falls silent, is replaced, and its job is tried once more.
+"""
+
+from collections.abc import Callable, Iterator, Sequence
+import contextlib
+import dataclasses
+import multiprocessing
+from multiprocessing import connection
+import os
+import time
+import traceback
+
+from waggle_tasks import errors
+
+SILENCE_S = 120.0  # Longer than any job is silent, starting included.
+TRIES = 2
+
+
+class WorkerError(errors.WaggleError):
+  """A job that failed in every worker that tried it."""
+
+
+@dataclasses.dataclass(frozen=True)
+class Job:
+  """Something to do in a worker.
+
+  Attributes:
+    name: For people.
+    work: What to call; it and its arguments are sent to another process.
+    arguments: For `work`; a function to report progress with comes first.
+  """
+
+  name: str
+  work: Callable
+  arguments: tuple
+
+
+@dataclasses.dataclass(frozen=True)
+class Progress:
+  """How far a job is; `amount` is what its work reported."""
+
+  job: Job
+  amount: float
+
+
+@dataclasses.dataclass(frozen=True)
+class Done:
+  """A finished job and what its work returned."""
+
+  job: Job
+  value: object
+
+
+@dataclasses.dataclass(eq=False)
+class _Worker:
+  """One process, the parent's end of its pipe, and what it does."""
+
+  process: multiprocessing.Process
+  pipe: connection.Connection
+  job: Job | None = None
+  heard_s: float = dataclasses.field(default_factory=time.monotonic)
+
+
+def run(
+  jobs: Sequence[Job], workers: int, silence_s: float = SILENCE_S
+) -> Iterator[Progress | Done]:
+  """Runs jobs and yields what happens, in the order in which it happens.
+
+  Args:
+    jobs: What to do; they are begun in this order.
+    workers: How many processes, at least 1.
+    silence_s: After how long without a sign of life a worker is replaced.
+
+  Raises:
+    WorkerError: if a job failed, or its worker died, `TRIES` times.
+  """
+  waiting, tries = list(jobs), dict.fromkeys((job.name for job in jobs), 0)
+  team = [_start() for _ in range(min(workers, len(jobs)))]
+  try:
+    while waiting or any(worker.job for worker in team):
+      for worker in team:
+        if worker.job is None and waiting:
+          _give(worker, waiting.pop(0))
+      pipes = [worker.pipe for worker in team if worker.job]
+      ready = connection.wait(pipes, timeout=1.0)
+      for number, worker in enumerate(team):
+        if worker.pipe in ready:
+          try:
+            yield from _hear(worker)
+            continue
+          except (EOFError, ConnectionError) as error:
+            reason = str(error) or 'its process died'
+        elif worker.job and time.monotonic() - worker.heard_s > silence_s:
+          reason = f'no sign of life for {silence_s:g} s'
+        else:
+          continue
+        _retry(worker, reason, waiting, tries)
+        team[number] = _start()
+  finally:
+    for worker in team:
+      _end(worker)
+
+
+def _start() -> _Worker:
+  context = multiprocessing.get_context('spawn')
+  ours, theirs = context.Pipe()
+  process = context.Process(target=_serve, args=(theirs,), daemon=True)
+  process.start()
+  theirs.close()  # So that the worker's death closes the pipe.
+  return _Worker(process, ours)
+
+
+def _give(worker: _Worker, job: Job) -> None:
+  worker.job, worker.heard_s = job, time.monotonic()
+  with contextlib.suppress(BrokenPipeError):  # Its death is noticed later.
+    worker.pipe.send(job)
+
+
+def _hear(worker: _Worker) -> Iterator[Progress | Done]:
+  kind, value = worker.pipe.recv()
+  job, worker.heard_s = worker.job, time.monotonic()
+  if kind == 'failed':
+    raise ConnectionError(value)
+  if kind == 'done':
+    worker.job = None
+    yield Done(job, value)
+  else:
+    yield Progress(job, value)
+
+
+def _retry(
+  worker: _Worker, reason: str, waiting: list[Job], tries: dict[str, int]
+) -> None:
+  """Ends a failed worker and puts its job back, or gives it up."""
+  _end(worker)
+  tries[worker.job.name] += 1
+  if tries[worker.job.name] >= TRIES:
+    raise WorkerError(
+      f'{worker.job.name} failed {TRIES} times, at last: {reason}'
+    )
+  waiting.insert(0, worker.job)
+
+
+def _end(worker: _Worker) -> None:
+  worker.process.kill()
+  worker.process.join()
+  worker.pipe.close()
+
+
+def _serve(pipe: connection.Connection) -> None:
+  """What a worker process does; it ends when its parent is gone."""
+  os.environ.setdefault('LP_NUM_THREADS', '1')  # Workers share the cores.
+  while True:
+    try:
+      job = pipe.recv()
+    except EOFError:
+      return
+    try:
+      value = job.work(lambda n: pipe.send(('progress', n)), *job.arguments)
+      answer = ('done', value)
+    except BrokenPipeError:
+      return
+    except Exception:
+      answer = ('failed', traceback.format_exc())
+    pipe.send(answer)

@@ -1,0 +1,59 @@
+"""Intervals and tests for suites of broadcasts.
+
+The broadcast is the experimental unit: its observers share a performer and a
+scene (paper, section 'Controls and supplemental suite').
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+from scipy import stats
+
+LEVEL = 0.95
+_RESAMPLES = 10_000
+
+
+def clopper_pearson(successes: int, trials: int) -> tuple[float, float]:
+  """The exact 95 % interval of a proportion (Clopper and Pearson 1934).
+
+  Args:
+    successes: At most `trials`.
+    trials: At least 1.
+  """
+  interval = stats.binomtest(successes, trials).proportion_ci(LEVEL, 'exact')
+  return float(interval.low), float(interval.high)
+
+
+def bootstrap_by_broadcast(
+  correct: Sequence[int], exposures: Sequence[int]
+) -> tuple[float, float]:
+  """A 95 % percentile interval of the share of receivers that were correct.
+
+  Whole broadcasts are drawn with replacement, 10,000 times from a fixed seed,
+  so that receivers of one broadcast stay together (Efron and Tibshirani 1993,
+  chapter 13).
+
+  Args:
+    correct: For each broadcast, how many receivers were correct.
+    exposures: For each broadcast, how many there were.
+  """
+  draw = np.random.RandomState(0).randint(
+    len(correct), size=(_RESAMPLES, len(correct))
+  )
+  shares = np.sum(np.asarray(correct)[draw], axis=1) / np.sum(
+    np.asarray(exposures)[draw], axis=1
+  )
+  low, high = np.quantile(shares, [(1 - LEVEL) / 2, (1 + LEVEL) / 2])
+  return float(low), float(high)
+
+
+def mcnemar(only_a: int, only_b: int) -> float:
+  """The exact two-sided p value of paired outcomes (McNemar 1947).
+
+  Args:
+    only_a: Pairs in which only the first succeeded.
+    only_b: Pairs in which only the second did.
+  """
+  if only_a + only_b == 0:
+    return 1.0
+  return float(stats.binomtest(only_a, only_a + only_b).pvalue)

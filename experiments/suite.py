@@ -1,0 +1,133 @@
+"""Runs a suite of broadcasts and sets the results beside the paper's.
+
+Leaves results.jsonl, results.csv and a run folder for each case. Ended at any
+moment, the same command goes on where it was. Exit status 0 when every case
+gave what is published for it, or passed where nothing is; 1 otherwise; 2 on
+bad input. A suite of your own is a JSON list of cases, each with a `name` and
+the fields of a scenario that it changes. `--compare A B` sets two result
+folders side by side and runs nothing.
+"""
+
+from collections.abc import Sequence
+import json
+import os
+import pathlib
+import sys
+import time
+
+from absl import flags
+
+from waggle_tasks import errors, suites
+from waggle_tasks.agents import receivers
+from waggle_tasks.experiments import (
+  launch,
+  provenance,
+  suite_runner,
+  suite_tables,
+)
+from waggle_tasks.protocol import checks, gestures
+
+ARGUMENTS = '[B]'
+
+_SUITE = flags.DEFINE_string(
+  'suite',
+  'paper',
+  f'One of {", ".join(suites.SUITES)}, or a JSON file of your own.',
+)
+_CASE = flags.DEFINE_list('case', [], 'Only these cases, by name.')
+_RECEIVER = flags.DEFINE_string(
+  'receiver',
+  'klt',
+  f'How observers read images. One of {", ".join(receivers.RECEIVERS)}.',
+)
+_WORKERS = flags.DEFINE_integer(
+  'workers', None, 'How many processes; unset, one for each core.'
+)
+_OUTPUT = flags.DEFINE_string(
+  'output', None, 'Result folder; unset, runs/SUITE-RECEIVER.'
+)
+_COMPARE = flags.DEFINE_string(
+  'compare', None, 'Result folder to set beside the folder B.'
+)
+
+
+class ResultError(errors.WaggleError):
+  """A result folder that cannot be read."""
+
+
+def main(argv: Sequence[str]) -> int:
+  """Runs or compares suites and returns the exit status."""
+  if _COMPARE.value is not None:
+    return _compare([_COMPARE.value, *argv[1:]])
+  if argv[1:]:
+    raise flags.Error(f'takes only flags, --name=value: got {argv[1]!r}.')
+  cases = _cases()
+  receivers.make(_RECEIVER.value, gestures.v_codebook())
+  workers = _WORKERS.value or len(os.sched_getaffinity(0))
+  checks.integer('workers', workers, 1, 1024, suites.SuiteError)
+  stem = pathlib.Path(_SUITE.value).stem
+  folder = pathlib.Path(_OUTPUT.value or f'runs/{stem}-{_RECEIVER.value}')
+  command = provenance.command_line(
+    'suite', [f'--suite={_SUITE.value}', f'--receiver={_RECEIVER.value}']
+  )
+  began_s = time.monotonic()
+  rows = suite_runner.run(cases, _RECEIVER.value, folder, workers, command)
+  wall_s = time.monotonic() - began_s
+  print(suite_tables.report(rows))
+  simulated_s = sum(row['simulated_s'] for row in rows)
+  print(
+    f'\n{len(rows)} cases, {simulated_s:.0f} s simulated, {wall_s:.0f} s of'
+    f' wall time in this call with {workers} workers, {folder}'
+  )
+  return 0 if all(map(_as_expected, rows)) else 1
+
+
+def _cases() -> tuple[suites.Case, ...]:
+  """The cases of the flags."""
+  name = _SUITE.value
+  cases = _own(name) if name.endswith('.json') else suites.find(name)
+  known = [case.name for case in cases]
+  for wanted in _CASE.value:
+    checks.choice('case', wanted, known, suites.SuiteError)
+  return tuple(c for c in cases if not _CASE.value or c.name in _CASE.value)
+
+
+def _own(path: str) -> tuple[suites.Case, ...]:
+  try:
+    rows = json.loads(pathlib.Path(path).read_text(encoding='utf-8'))
+  except (OSError, ValueError) as error:
+    raise suites.SuiteError(
+      f'`suite` must be a readable JSON file: {path}: {error}'
+    ) from None
+  if not isinstance(rows, list):
+    raise suites.SuiteError(f'`suite` must be a JSON list of cases: {path}')
+  return suites.from_rows(rows)
+
+
+def _as_expected(row: suite_tables.Row) -> bool:
+  published = row['published']
+  if published is None:
+    return row['passed']
+  ours = {'correct': row['correct'], 'passed': row['passed']}
+  return ours == published
+
+
+def _compare(folders: Sequence[str]) -> int:
+  if len(folders) != 2:
+    raise flags.Error(f'--compare takes two folders: got {len(folders)}.')
+  tables = []
+  for folder in folders:
+    path = pathlib.Path(folder, 'results.jsonl')
+    try:
+      lines = path.read_text(encoding='utf-8').splitlines()
+      tables.append([json.loads(line) for line in lines])
+    except (OSError, ValueError) as error:
+      raise ResultError(
+        f'`compare` must name folders of finished suites: {path}: {error}'
+      ) from None
+  print(suite_tables.compare(*tables, tuple(folders)))
+  return 0
+
+
+if __name__ == '__main__':
+  sys.exit(launch.run(__name__))
