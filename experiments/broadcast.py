@@ -12,6 +12,7 @@ import pathlib
 import sys
 
 from absl import flags
+from dm_control import composer
 import dm_env
 import tqdm
 
@@ -67,8 +68,12 @@ def _roll(scene: scenario.Scenario, receiver_name: str) -> rollout_lib.Rollout:
     bar_format=form + ' simulated [{elapsed} < {remaining}]',
   ) as bar:  # fmt: skip
 
-    def watch(timestep: dm_env.TimeStep, team: observer_agent.Team) -> None:
-      del team
+    def watch(
+      environment: composer.Environment,
+      timestep: dm_env.TimeStep,
+      team: observer_agent.Team,
+    ) -> None:
+      del environment, team
       if not timestep.first():
         bar.update(timing.FRAME_S)
 

@@ -14,6 +14,7 @@ from waggle_tasks.experiments import launch
 # Name of a module in this folder -> what it does, in one line.
 COMMANDS = {
   'broadcast': 'Fly one dance and let every observer read and follow it.',
+  'suite': "Run the paper's evaluation, or your own, beside its results.",
   'doctor': 'Check that this machine can run the tasks, and say what to mend.',
 }
 

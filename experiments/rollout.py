@@ -9,12 +9,16 @@ import numpy as np
 from waggle_tasks import registry, scenario
 from waggle_tasks.agents import observer_agent, receiver
 from waggle_tasks.experiments import provenance
+from waggle_tasks.experiments import traces as traces_lib
 from waggle_tasks.protocol import timing
 from waggle_tasks.tasks import safety
 
 Event = receiver.Event | observer_agent.Navigation | safety.Refusal
-# Called with each time step and the team, after the team has acted on it.
-Watcher = Callable[[dm_env.TimeStep, observer_agent.Team], None]
+# Called with the environment, each time step, and the team after it has acted
+# on it. A watcher may look at everything and change nothing.
+Watcher = Callable[
+  [registry.composer.Environment, dm_env.TimeStep, observer_agent.Team], None
+]
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -28,6 +32,7 @@ class Rollout:
     events: By observer name, what its agent saw and did, and what the safety
       checks refused, in order of time.
     renderer: The GL renderer that drew the images.
+    traces: By observer name, what its receiver saw in each image.
   """
 
   times_s: np.ndarray
@@ -35,6 +40,7 @@ class Rollout:
   contacts: tuple[tuple[float, tuple[str, str]], ...]
   events: dict[str, tuple[Event, ...]]
   renderer: str
+  traces: dict[str, traces_lib.Trace] = dataclasses.field(default_factory=dict)
 
 
 def run(
@@ -68,6 +74,7 @@ def _run(
   watchers: Sequence[Watcher],
 ) -> Rollout:
   task, truth, contacts = environment.task, [], []
+  tracer = traces_lib.Tracer(len(team.agents))
   timestep = environment.reset()
   physics = environment.physics  # Resetting may compile a new one.
   while True:
@@ -75,8 +82,9 @@ def _run(
     time_s = (len(truth) - 1) * timing.FRAME_S
     contacts += [(time_s, pair) for pair in task.contacts]
     action = team.step(timestep.observation)
+    tracer.note(team)
     for watch in watchers:
-      watch(timestep, team)
+      watch(environment, timestep, team)
     if timestep.last():
       break
     timestep = environment.step(action)
@@ -93,4 +101,5 @@ def _run(
     tuple(contacts),
     events,
     provenance.renderer_name(),
+    dict(zip(events, tracer.traces(), strict=True)),
   )

@@ -1,0 +1,152 @@
+"""What receivers saw, frame by frame: the evidence behind their events."""
+
+from collections.abc import Mapping, Sequence
+import dataclasses
+import pathlib
+import zipfile
+
+import numpy as np
+
+from waggle_tasks import errors
+from waggle_tasks.agents import klt, observer_agent, segmenter
+
+
+class TraceError(errors.WaggleError):
+  """A file of traces that cannot be read."""
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class Motion:
+  """One motion as a receiver cut it out of its track.
+
+  Attributes:
+    confirmed_s: Time of the event that it became.
+    begin_s: When it began.
+    end_s: When it came to rest.
+    path_px: (K, 2) the track in between, x right and y down.
+  """
+
+  confirmed_s: float
+  begin_s: float
+  end_s: float
+  path_px: np.ndarray
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class Trace:
+  """What one receiver saw in each of the T images that it took.
+
+  Attributes:
+    times_s: (T,) times of the images.
+    centre_px: (T, 2) the target, x right and y down.
+    speed_px_s: (T,) its image speed.
+    support: (T,) features that survived the checks.
+    quality: (T,) their share of those that were followed.
+    valid: (T,) whether the support was enough.
+    motions: What was cut out, in order.
+  """
+
+  times_s: np.ndarray
+  centre_px: np.ndarray
+  speed_px_s: np.ndarray
+  support: np.ndarray
+  quality: np.ndarray
+  valid: np.ndarray
+  motions: tuple[Motion, ...] = ()
+
+  @classmethod
+  def of(
+    cls, tracks: Sequence[klt.Track], motions: Sequence[Motion]
+  ) -> 'Trace':
+    """The trace of a receiver's tracks, one for each image."""
+    rows = [
+      (t.time_s, *t.centre_px, t.speed_px_s, t.support, t.quality, t.valid)
+      for t in tracks
+    ]
+    table = np.array(rows, float).reshape(-1, 7).T
+    return cls(
+      table[0], table[1:3].T, table[3], table[4], table[5],
+      table[6].astype(bool), tuple(motions),
+    )  # fmt: skip
+
+
+class Tracer:
+  """Notes the tracks of a team while it works."""
+
+  def __init__(self, count: int) -> None:
+    """Makes a tracer.
+
+    Args:
+      count: How many agents the team has.
+    """
+    self._tracks: list[list[klt.Track]] = [[] for _ in range(count)]
+    self._motions: list[list[Motion]] = [[] for _ in range(count)]
+
+  def note(self, team: observer_agent.Team) -> None:
+    """Takes what each receiver saw in this frame, if it took an image."""
+    for tracks, motions, agent in zip(
+      self._tracks, self._motions, team.agents, strict=True
+    ):
+      track = agent.receiver.track
+      if track is None or (tracks and track is tracks[-1]):
+        continue  # While it navigates, an agent reads no more.
+      tracks.append(track)
+      segment = agent.receiver.segment
+      if segment is not None:
+        motions.append(_motion(track.time_s, segment))
+
+  def traces(self) -> tuple[Trace, ...]:
+    """The traces so far, in the order of the team's agents."""
+    return tuple(map(Trace.of, self._tracks, self._motions))
+
+
+def _motion(confirmed_s: float, segment: segmenter.Segment) -> Motion:
+  return Motion(confirmed_s, segment.begin_s, segment.end_s, segment.path_px)
+
+
+def save(path: pathlib.Path, traces: Mapping[str, Trace]) -> None:
+  """Writes traces by observer name; equal traces give equal bytes."""
+  arrays = {}
+  for name, trace in traces.items():
+    for field in dataclasses.fields(Trace)[:-1]:
+      arrays[f'{name}.{field.name}'] = getattr(trace, field.name)
+    motions = trace.motions
+    arrays[f'{name}.motion_s'] = np.array(
+      [(m.confirmed_s, m.begin_s, m.end_s) for m in motions]
+    ).reshape(-1, 3)
+    lengths = [len(m.path_px) for m in motions]
+    arrays[f'{name}.motion_lengths'] = np.array(lengths, int)
+    arrays[f'{name}.motion_px'] = np.concatenate(
+      [np.empty((0, 2)), *(m.path_px for m in motions)]
+    )
+  np.savez_compressed(path, **arrays)
+
+
+def load(path: pathlib.Path) -> dict[str, Trace]:
+  """Reads what `save` wrote.
+
+  Raises:
+    TraceError: if the file is missing, damaged or something else.
+  """
+  try:
+    with np.load(path, allow_pickle=False) as file:
+      arrays = dict(file)
+    names = dict.fromkeys(key.rpartition('.')[0] for key in arrays)
+    return {name: _read(arrays, name) for name in names}
+  except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile) as error:
+    raise TraceError(f'{path} must be a file of traces: {error}') from None
+
+
+def _read(arrays: Mapping[str, np.ndarray], name: str) -> Trace:
+  fields = [field.name for field in dataclasses.fields(Trace)[:-1]]
+  ends = np.cumsum(arrays[f'{name}.motion_lengths'])
+  paths_px = np.split(arrays[f'{name}.motion_px'], ends)[:-1]
+  motions = [
+    Motion(*map(float, moments), path_px)
+    for moments, path_px in zip(
+      arrays[f'{name}.motion_s'], paths_px, strict=True
+    )
+  ]
+  return Trace(
+    *(arrays[f'{name}.{field}'] for field in fields), motions=tuple(motions)
+  )
