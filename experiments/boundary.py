@@ -1,0 +1,172 @@
+"""Shows that a receiver's events come from its own images and times alone.
+
+Two experiments on one scenario. In the first, a second world differs in all
+that a receiver could have peeked at: another payload, other positions of all
+vehicles, another dance, and so other images for everybody else; each receiver
+works in that world but is given the images that it had in the first. Its
+events must not change. In the second, two observers' images are swapped: their
+events must swap. Exit status 0 when both hold, 1 when not.
+"""
+
+from collections.abc import Callable, Sequence
+import dataclasses
+import sys
+
+from absl import flags
+import dm_env
+import numpy as np
+import tqdm
+
+from waggle_tasks import errors, registry, scenario
+from waggle_tasks.agents import observer_agent, receiver, receivers
+from waggle_tasks.experiments import launch, scenario_flags, table
+from waggle_tasks.protocol import checks, timing
+
+scenario_flags.define()
+_RECEIVER = flags.DEFINE_string(
+  'receiver', 'klt', f'One of {", ".join(receivers.RECEIVERS)}.'
+)
+_OTHER = flags.DEFINE_string(
+  'other_payload', '110101', 'Six bits that the other world sends.'
+)
+_SWAP = flags.DEFINE_list('swap', ['1', '2'], 'Two observers, by number.')
+
+Images = list[np.ndarray]
+Events = list[list[receiver.Event]]
+
+
+class SwapError(errors.WaggleError):
+  """Observers that cannot be swapped."""
+
+
+class _World:
+  """An environment, its team, and what the team is shown instead."""
+
+  def __init__(self, scene: scenario.Scenario, receiver_name: str) -> None:
+    self.team = observer_agent.Team(
+      scene.observers, receiver_name, scene.codebook, scene.units
+    )
+    self.environment = registry.environment(scene)
+    self.timestep: dm_env.TimeStep = self.environment.reset()
+
+  @property
+  def images(self) -> Images:
+    """What the observers' cameras see now, one for each."""
+    return [each['camera'] for each in self.timestep.observation]
+
+  def step(self, images: Images) -> None:
+    """Lets the team act on other images, in this world's positions."""
+    shown = [
+      {**observation, 'camera': image}
+      for observation, image in zip(
+        self.timestep.observation, images, strict=True
+      )
+    ]
+    action = self.team.step(shown)
+    if not self.timestep.last():
+      self.timestep = self.environment.step(action)
+
+  @property
+  def seen(self) -> Events:
+    """What each receiver saw so far."""
+    return [
+      [e for e in agent.events if isinstance(e, receiver.Event)]
+      for agent in self.team.agents
+    ]
+
+
+def experiment(
+  scene: scenario.Scenario,
+  other: scenario.Scenario,
+  receiver_name: str,
+  swap: tuple[int, int],
+  tick: Callable[[], object] = lambda: None,
+) -> tuple[Events, Events, Events]:
+  """Runs three worlds side by side.
+
+  Args:
+    scene: The scenario whose images are used.
+    other: A scenario that differs in everything else.
+    receiver_name: The receiver.
+    swap: Indices of the observers whose images are swapped.
+    tick: Called after each frame.
+
+  Returns:
+    For each observer its events: in its own world, in the other world with
+    its own images, and in its own world with two observers' images swapped.
+  """
+  own, foreign = (_World(each, receiver_name) for each in (scene, other))
+  swapped = _World(scene, receiver_name)
+  worlds = (own, foreign, swapped)
+  order = list(range(scene.observers))
+  order[swap[0]], order[swap[1]] = swap[1], swap[0]
+  try:
+    for _ in range(timing.frames(scene.episode_s)):
+      images = own.images
+      own.step(images)
+      foreign.step(images)
+      swapped.step([images[k] for k in order])
+      tick()
+      if own.timestep.last():
+        break
+  finally:
+    for world in worlds:
+      world.environment.close()
+  return own.seen, foreign.seen, swapped.seen
+
+
+def main(argv: Sequence[str]) -> int:
+  """Runs both experiments and returns the exit status."""
+  del argv
+  scene = scenario_flags.read()
+  receivers.make(_RECEIVER.value, scene.codebook)
+  other = dataclasses.replace(
+    scene, payload=_OTHER.value, jitter_m=0.01, seed=scene.seed + 1
+  )
+  if other.payload == scene.payload:
+    raise SwapError(
+      f'`other_payload` must differ from `payload`: got {other.payload}'
+    )
+  swap = _swap(scene.observers)
+  with tqdm.tqdm(total=timing.frames(scene.episode_s), desc='frames') as bar:
+    own, foreign, swapped = experiment(
+      scene, other, _RECEIVER.value, swap, bar.update
+    )
+  expected = list(own)
+  expected[swap[0]], expected[swap[1]] = own[swap[1]], own[swap[0]]
+  rows = [
+    (
+      f'observer_{k + 1}',
+      _message(own[k]),
+      str(len(own[k])),
+      'yes' if own[k] == foreign[k] else 'NO',
+      _message(swapped[k]),
+      'yes' if swapped[k] == expected[k] else 'NO',
+    )
+    for k in range(scene.observers)
+  ]
+  header = (
+    'observer', 'message', 'events', f'same under {other.payload}',
+    'message, swapped', 'swapped',
+  )  # fmt: skip
+  print(table.render(header, rows))
+  holds = own == foreign and swapped == expected
+  print('The boundary holds.' if holds else 'The boundary is BROKEN.')
+  return 0 if holds else 1
+
+
+def _swap(observers: int) -> tuple[int, int]:
+  numbers = [int(n) if n.isdecimal() else n for n in _SWAP.value]
+  if len(numbers) != 2 or numbers[0] == numbers[1]:
+    raise SwapError(f'`swap` must name two observers: got {_SWAP.value}')
+  for number in numbers:
+    checks.integer('swap', number, 1, observers, SwapError)
+  return numbers[0] - 1, numbers[1] - 1
+
+
+def _message(events: Sequence[receiver.Event]) -> str:
+  return next((e.message.bits for e in events if e.message), '-')
+
+
+if __name__ == '__main__':
+  sys.exit(launch.run(__name__))
