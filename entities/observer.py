@@ -18,17 +18,23 @@ class Observer(crazyflie.Crazyflie):
   arguments that makes a new `eye.Corruptor` for each episode, or None.
   """
 
-  def _build(self, name: str = 'observer', camera: str = 'incremental') -> None:
+  def _build(
+    self,
+    name: str = 'observer',
+    camera: str = 'incremental',
+    eye_offset_m: float = eye.OFFSET_M,
+  ) -> None:
     """Builds the model.
 
     Args:
       name: Model name, the prefix of everything inside it.
       camera: One of `CAMERAS`: how its images are rendered.
+      eye_offset_m: How far the eye is ahead of the centre of mass.
     """
     super()._build(name, crazyflie.AZURE)
     self._incremental = camera == 'incremental'
     self._eye = self.airframe.add(
-      'camera', name='eye', pos=(eye.OFFSET_M, 0, 0),
+      'camera', name='eye', pos=(eye_offset_m, 0, 0),
       xyaxes=(0, -1, 0, 0, 0, 1), fovy=eye.FOVY_DEG,
     )  # fmt: skip
     self.corruptor: Callable[[], eye.Corruptor] | None = None

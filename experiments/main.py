@@ -16,6 +16,7 @@ COMMANDS = {
   'broadcast': 'Fly one dance and let every observer read and follow it.',
   'suite': "Run the paper's evaluation, or your own, beside its results.",
   'bench': 'Measure images, the loop and whole broadcasts on this machine.',
+  'sensitivity': 'Move each open choice both ways and show what changes.',
   'boundary': 'Show that receivers use their own images and nothing else.',
   'doctor': 'Check that this machine can run the tasks, and say what to mend.',
 }

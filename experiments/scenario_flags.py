@@ -27,6 +27,7 @@ _HELP = {
   'stop_s': 'When sending stops with --control=interrupted, in s.',
   'duration_s': 'Longest episode, in s; unset, what the control needs.',
   'camera': 'How images are rendered; the picture is the same.',
+  'eye_offset_m': "How far an eye is ahead of its vehicle's centre, in m.",
   'floor': 'The floor of the room.',
   'brightness': 'Brightness of every light, 1 as designed.',
   'shadows': 'Whether lights cast shadows; slower.',

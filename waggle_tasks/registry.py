@@ -43,7 +43,9 @@ def find(name: str, **changes: object) -> Scenario:
 def build(scenario: Scenario) -> broadcast.Broadcast:
   """Builds the task of a scenario from new entities."""
   observers = tuple(
-    observer.Observer(f'observer_{number + 1}', scenario.camera)
+    observer.Observer(
+      f'observer_{number + 1}', scenario.camera, scenario.eye_offset_m
+    )
     for number in range(scenario.observers)
   )
   parts = parts_lib.Parts(

@@ -6,7 +6,7 @@ import math
 from waggle_tasks import appearance as appearance_lib
 from waggle_tasks import errors
 from waggle_tasks.arenas import layouts
-from waggle_tasks.entities import observer
+from waggle_tasks.entities import eye, observer
 from waggle_tasks.protocol import checks, frame, gestures, timing
 from waggle_tasks.protocol import payload as payload_lib
 from waggle_tasks.protocol import schedule as schedule_lib
@@ -55,6 +55,7 @@ class Scenario:
     units: The agreed heading step and distance unit.
     appearance: How the room looks.
     camera: One of `observer.CAMERAS`; both give the same picture.
+    eye_offset_m: How far an observer's eye is ahead of its centre of mass.
   """
 
   control: str = 'none'
@@ -74,6 +75,7 @@ class Scenario:
   units: payload_lib.Units = payload_lib.Units()
   appearance: appearance_lib.Appearance = appearance_lib.Appearance()
   camera: str = 'incremental'
+  eye_offset_m: float = eye.OFFSET_M
 
   def __post_init__(self) -> None:
     for field in dataclasses.fields(self):
@@ -100,6 +102,7 @@ class Scenario:
       'spacing_m': (0.0, 4.0),
       'jitter_m': (0.0, 0.1),
       'stop_s': (0.0, 600.0),
+      'eye_offset_m': (-0.1, 0.1),
       'duration_s': (timing.FRAME_S, 600.0),
     }
     if self.duration_s is None:
