@@ -8,7 +8,9 @@ from dm_control.composer.observation import observable
 from dm_env import specs
 import numpy as np
 
+from waggle_tasks import errors
 from waggle_tasks.entities import renderer
+from waggle_tasks.protocol import checks
 
 FOVY_DEG = 60.0  # Paper, section 'Scene, sensors, and information boundaries'.
 # Ahead of the centre of mass, clear of the airframe.
@@ -26,6 +28,10 @@ def _renderer(physics: mjcf.Physics) -> renderer.Renderer:
   if key not in _RENDERERS:
     _RENDERERS[key] = renderer.Renderer(physics)
   return _RENDERERS[key]
+
+
+class CorruptorError(errors.WaggleError):
+  """A disturbance of no sensible size."""
 
 
 class EyeCamera(observable.Observable):
@@ -89,7 +95,11 @@ class GaussianNoise:
 
     Args:
       sigma: Standard deviation in grey levels, 0 to 128.
+
+    Raises:
+      CorruptorError: if it is not.
     """
+    checks.number('sigma', sigma, 0, 128, CorruptorError)
     self._sigma = sigma
 
   def __call__(

@@ -28,10 +28,12 @@ _HIDDEN_GROUP = 5  # Not drawn by default (MuJoCo, mjvOption.geomgroup).
 _STILL = 1e-6
 # Whatever of the model shows in a picture and can be changed at run time.
 _LOOKS = (
-  'geom_rgba', 'geom_size', 'geom_matid', 'mat_rgba', 'mat_texrepeat',
+  'geom_rgba', 'geom_size', 'geom_matid', 'geom_pos', 'geom_quat', 'body_pos',
+  'body_quat', 'mat_rgba', 'mat_texrepeat',
   'cam_fovy', 'light_active', 'light_diffuse', 'light_ambient', 'light_pos',
   'light_dir', 'light_castshadow', 'mat_reflectance',
 )  # fmt: skip
+_HEADLIGHT = ('ambient', 'diffuse', 'specular')
 _WHOLE = (0, 0, WIDTH, HEIGHT)
 
 
@@ -82,6 +84,8 @@ class Renderer:
         f' {_SAMPLES * WIDTH} and {_SAMPLES * HEIGHT}: got {buffer}'
       )
     self._scene = mujoco.MjvScene(model, max(model.ngeom, 1) + 100)
+    # Observers see no shadows: that of a moving body falls outside its window.
+    self._scene.flags[mujoco.mjtRndFlag.mjRND_SHADOW] = False
     self._option = mujoco.MjvOption()
     self._perturb = mujoco.MjvPerturb()
     self._camera = mujoco.MjvCamera()
@@ -141,16 +145,19 @@ class Renderer:
     return canvas.pixels
 
   def _watch_looks(self) -> None:
+    headlight = self._model.vis.headlight
     looks = [getattr(self._model, name).tobytes() for name in _LOOKS]
+    looks += [getattr(headlight, name).tobytes() for name in _HEADLIGHT]
     if looks != self._looks:
       self._looks, self._looks_version = looks, self._looks_version + 1
+      self._find_parts()  # Their boxes follow from places and sizes.
 
   def _must_begin_anew(self, canvas: _Canvas, camera: np.ndarray) -> bool:
     """The rule of the full render: nothing that is kept may be out of date.
 
     A picture is begun anew the first time, when its camera has moved, when
-    the model's looks changed, and always in a scene with shadows or
-    reflections, as those of a moving body fall outside its own window.
+    the model's looks changed, and always where windows cannot hold what
+    moves, as in reflections.
     """
     return (
       canvas.poses is None
@@ -162,8 +169,7 @@ class Renderer:
   @property
   def _spills(self) -> bool:
     """Whether bodies change the picture outside their windows."""
-    model = self._model
-    return bool(model.light_castshadow.any() or model.mat_reflectance.any())
+    return bool(self._model.mat_reflectance.any())
 
   def _redraw(
     self, camera_id: int, canvas: _Canvas, moved: np.ndarray, anew: bool
@@ -173,12 +179,13 @@ class Renderer:
     mujoco.mjr_setBuffer(mujoco.mjtFramebuffer.mjFB_OFFSCREEN, context)
     self._camera.fixedcamid = camera_id
     mobile = np.flatnonzero(self._bodies > 0)
+    spills = self._spills
     wanted = {}
-    if not self._spills:
+    if not spills:
       wanted = windows.merge({i: tuple(canvas.boxes[i]) for i in mobile})
     try:
       if anew:
-        hidden = set() if self._spills else set(mobile)
+        hidden = set() if spills else set(mobile)
         self._draw(canvas, _WHOLE, canvas.room, hidden)
         canvas.pixels[:] = canvas.room
       changed = set(moved)
@@ -247,5 +254,10 @@ class Renderer:
     from_eye = corners + (data.xpos[bodies] - data.cam_xpos[camera_id])[:, None]
     in_eye = from_eye @ data.cam_xmat[camera_id].reshape(3, 3)
     near = model.vis.map.znear * model.stat.extent
-    focal_px = HEIGHT / 2 / np.tan(np.radians(model.cam_fovy[camera_id]) / 2)
+    fovy = model.cam_fovy[camera_id]
+    focal_px = HEIGHT / 2 / np.tan(np.radians(fovy) / 2)
+    orthographic = mujoco.mjtProjection.mjPROJ_ORTHOGRAPHIC
+    if model.cam_projection[camera_id] == orthographic:
+      # Its `fovy` is the picture's height in m, whatever the depth: as 1 m.
+      in_eye[..., 2], focal_px = -1.0, HEIGHT / fovy
     return windows.around(in_eye, near, focal_px, (WIDTH, HEIGHT))

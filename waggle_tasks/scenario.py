@@ -143,14 +143,20 @@ class Scenario:
       layouts.LayoutError: if two vehicles would be too close.
     """
     poses = {'performer': layouts.performer_pose()}
-    for index, pose in enumerate(self._layout().poses(self.observers)):
+    places = self._layout().poses(self.observers)
+    if len(places) != self.observers:
+      raise ScenarioError(
+        f'`layout` must give {self.observers} poses: got {len(places)}'
+      )
+    for index, pose in enumerate(places):
       poses[f'observer_{index + 1}'] = pose
-    # Two neighbours can come closer by the jitter of both.
-    layouts.check_spacing(poses, safety.MINIMUM_SPACING_M + 2 * self.jitter_m)
+    # Two neighbours can come closer by the jitter of both, along x and y.
+    nearer_m = 2 * math.hypot(self.jitter_m, self.jitter_m)
+    layouts.check_spacing(poses, safety.MINIMUM_SPACING_M + nearer_m)
     return poses
 
   def _layout(self) -> layouts.Layout:
-    if not isinstance(self.layout, str):
+    if callable(getattr(self.layout, 'poses', None)):
       return self.layout
     checks.choice('layout', self.layout, LAYOUTS, ScenarioError)
     if self.layout == 'arc':

@@ -75,6 +75,7 @@ class Gesture:
   def __post_init__(self) -> None:
     name = f'gesture {self.symbol}'
     checks.choice('symbol', self.symbol, MOTIONS, CodebookError)
+    object.__setattr__(self, 'symbol', Symbol(self.symbol))
     checks.number(f'{name} duration_s', self.duration_s, 0.1, 60, CodebookError)
     if len(self.corners_m) < 3:
       raise CodebookError(

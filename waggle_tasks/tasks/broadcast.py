@@ -8,23 +8,14 @@ from dm_control.composer.observation import observable
 from dm_env import specs
 import numpy as np
 
-from waggle_tasks import errors
 from waggle_tasks.arenas import flight_room, layouts
 from waggle_tasks.entities import controller, observer, performer
 from waggle_tasks.protocol import reference, timing
+from waggle_tasks.tasks import actions, progress, safety
 from waggle_tasks.tasks import parts as parts_lib
-from waggle_tasks.tasks import progress, safety
 
 PHYSICS_TIMESTEP_S = 0.004
 OBSERVATIONS = ('camera', 'time_s', 'position_m')
-# Limits of a reference: the stock firmware's 1 m/s per axis and 20 degrees of
-# tilt, 3.57 m/s^2.
-_MAX_SPEED_MPS = 1.0
-_MAX_ACCELERATION_MPS2 = 3.57
-
-
-class ActionError(errors.WaggleError):
-  """An action that is not one finite reference for each observer."""
 
 
 class Broadcast(composer.Task):
@@ -156,7 +147,7 @@ class Broadcast(composer.Task):
       np.array(home.position_m), home.yaw_rad, middle_s
     )
     self._controllers['performer'].command(physics, *motion)
-    wanted = self._references(action)
+    wanted = actions.read(action, [*self._observers])
     self._judge(wanted, self.positions_m(physics), time_s)
     for gate, each in zip(self._gates, wanted, strict=True):
       followed = gate.follow(each, time_s)
@@ -167,27 +158,6 @@ class Broadcast(composer.Task):
         followed.acceleration_mps2,
         followed.turn_rad,
       )
-
-  def _references(
-    self, action: Sequence[np.ndarray]
-  ) -> list[reference.Reference]:
-    """Checks an action and brings it within its bounds."""
-    if len(action) != len(self._observers):
-      raise ActionError(
-        f'`action` must hold one reference for each of {len(self._observers)}'
-        f' observers: got {len(action)}'
-      )
-    out = []
-    for name, array in zip(self._observers, action, strict=True):
-      array = np.asarray(array, dtype=float)
-      if array.shape != (reference.SIZE,) or not np.isfinite(array).all():
-        raise ActionError(
-          f'`action` of {name} must be {reference.SIZE} finite numbers:'
-          f' got {array}'
-        )
-      array = np.clip(array, *_bounds())
-      out.append(reference.Reference.from_array(array))
-    return out
 
   def _judge(
     self,
@@ -240,7 +210,8 @@ class Broadcast(composer.Task):
         model.id2name(model.geom_bodyid[geom], 'body').split('/')[0]
         for geom in (contact.geom1, contact.geom2)
       ]
-      pairs.add(tuple(sorted(name or 'room' for name in names)))
+      named = ('room' if name == 'world' else name for name in names)
+      pairs.add(tuple(sorted(named)))
     return tuple(sorted(pairs))
 
   def positions_m(self, physics: mjcf.Physics) -> dict[str, np.ndarray]:
@@ -285,25 +256,8 @@ class Broadcast(composer.Task):
   def action_spec(self, physics: mjcf.Physics) -> list[specs.BoundedArray]:
     """One reference for each observer: (13,) float64, bounded."""
     del physics
-    low, high = _bounds()
-    return [
-      specs.BoundedArray((reference.SIZE,), float, low, high, name=name)
-      for name in self._observers
-    ]
+    return actions.specification([*self._observers])
 
   def get_reward_spec(self) -> list[specs.Array]:
     """One float for each observer."""
     return [specs.Array((), float, name=name) for name in self._observers]
-
-
-def _bounds() -> tuple[np.ndarray, np.ndarray]:
-  """Lowest and highest reference, (13,) each."""
-  room = flight_room
-  low_m = np.array([-room.HALF_WIDTH_M, -room.HALF_DEPTH_M, 0.0])
-  high_m = np.array([room.HALF_WIDTH_M, room.HALF_DEPTH_M, room.HEIGHT_M])
-  speed = np.full(3, _MAX_SPEED_MPS)
-  acceleration = np.full(3, _MAX_ACCELERATION_MPS2)
-  return (
-    np.concatenate([low_m, -speed, -acceleration, [-math.pi], low_m]),
-    np.concatenate([high_m, speed, acceleration, [math.pi], high_m]),
-  )

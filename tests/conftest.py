@@ -1,0 +1,160 @@
+"""Fixtures that several test modules share.
+
+`waggle_tasks` is imported before dm_control, which takes the GL backend as it
+finds it.
+"""
+
+from collections.abc import Callable, Iterator, Sequence
+import dataclasses
+import math
+
+import dm_env
+import numpy as np
+import pytest
+
+from waggle_tasks import registry
+from waggle_tasks.protocol import flight, gestures, reference, timing
+
+Observations = Sequence[dict[str, np.ndarray]]
+Agent = Callable[[Observations], list[np.ndarray]]
+
+
+def pytest_configure(config: pytest.Config) -> None:
+  """Declares xdist's mark, so that tests run without xdist too."""
+  config.addinivalue_line(
+    'markers', 'xdist_group(name): run by one worker, with `--dist loadgroup`'
+  )
+
+
+@pytest.fixture(scope='session')
+def short() -> dict[str, object]:
+  """Scenario fields of a dance of half the length that every view can read.
+
+  Small, fast gestures, and pauses that just fit the receiver's null.
+  """
+  return {
+    'codebook': gestures.v_codebook(0.12, 0.25, duration_s=2.0),
+    'pauses': timing.Timing(3.2, 0.6, 2.0, 1.8),
+  }
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class Clip:
+  """What one observer saw, and where the performer truly was in it.
+
+  Attributes:
+    images: One (480, 640, 3) uint8 for each frame; equal ones are one array.
+    times_s: Their times.
+    target_px: (T, 2) the performer's centre in each.
+  """
+
+  images: list[np.ndarray]
+  times_s: list[float]
+  target_px: np.ndarray
+
+
+@pytest.fixture(scope='session')
+def clip(short: dict[str, object]) -> Clip:
+  """The front view of a null, START, a null, 0 and a null: 15.2 s."""
+  environment = registry.load(
+    'broadcast', observers=1, duration_s=15.2, **short
+  )
+  images, times_s, target_px = [], [], []
+  timestep = environment.reset()
+  physics = environment.physics
+  eye = physics.model.name2id('observer_1/eye', 'camera')
+  focal_px = 240 / math.tan(math.radians(30))
+  while True:
+    (seen,) = timestep.observation
+    same = images and np.array_equal(images[-1], seen['camera'])
+    images.append(images[-1] if same else seen['camera'].copy())
+    times_s.append(float(seen['time_s']))
+    data = physics.data
+    performer_m = environment.task.positions_m(physics)['performer']
+    x, y, z = (performer_m - data.cam_xpos[eye]) @ data.cam_xmat[eye].reshape(
+      3, 3
+    )
+    target_px.append((320 - focal_px * x / z, 240 + focal_px * y / z))
+    if timestep.last():
+      break
+    timestep = environment.step(_hover(timestep.observation))
+  environment.close()
+  return Clip(images, times_s, np.array(target_px))
+
+
+@pytest.fixture
+def load() -> Iterator[Callable[..., registry.composer.Environment]]:
+  """Makes environments of named scenarios; they are closed after the test.
+
+  With `cameras=False` observations hold no images, which makes flights cheap.
+  """
+  made = []
+
+  def make(
+    name: str = 'broadcast', cameras: bool = True, **changes: object
+  ) -> registry.composer.Environment:
+    environment = registry.load(name, **changes)
+    made.append(environment)
+    for each in environment.task.observers:
+      each.observables.camera.enabled = cameras
+    return environment
+
+  yield make
+  for environment in made:
+    environment.close()
+
+
+def _episode(
+  environment: registry.composer.Environment, agent: Agent
+) -> Iterator[dm_env.TimeStep]:
+  timestep = environment.reset()
+  yield timestep
+  while not timestep.last():
+    timestep = environment.step(agent(timestep.observation))
+    yield timestep
+
+
+@pytest.fixture
+def episode() -> Callable[..., Iterator[dm_env.TimeStep]]:
+  """The time steps of one episode of an environment with an agent."""
+  return _episode
+
+
+def _hover(observations: Observations) -> list[np.ndarray]:
+  return [
+    reference.Reference.hover(each['position_m']).to_array()
+    for each in observations
+  ]
+
+
+@pytest.fixture
+def hover() -> Agent:
+  """An agent that stays where it is."""
+  return _hover
+
+
+class _Flyer:
+  def __init__(self, offset_m: Sequence[float], begin_s: float) -> None:
+    self._offset_m = np.array(offset_m)
+    self._begin_s = begin_s
+    self._begins_m: list[np.ndarray] = []
+
+  def __call__(self, observations: Observations) -> list[np.ndarray]:
+    if not self._begins_m:
+      self._begins_m = [each['position_m'].copy() for each in observations]
+    time_s = float(observations[0]['time_s'])
+    if time_s < self._begin_s:
+      return _hover([{'position_m': each} for each in self._begins_m])
+    out = []
+    for begin_m in self._begins_m:
+      plan = flight.Flight(begin_m, begin_m + self._offset_m, self._begin_s)
+      motion = plan.motion(time_s + timing.FRAME_S / 2)
+      wanted = reference.Reference(*motion, 0.0, plan.goal_m)
+      out.append(wanted.to_array())
+    return out
+
+
+@pytest.fixture
+def flyer() -> Callable[[Sequence[float], float], Agent]:
+  """Makes an agent that flies an offset from where it was at a time."""
+  return _Flyer
