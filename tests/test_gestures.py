@@ -159,11 +159,11 @@ def test_a_gesture_named_by_its_text_is_that_gesture_or_refused() -> None:
     ),
     (
       lambda: gestures.v_codebook(half_width_m=math.nan),
-      'corners_m` must be a finite number: got nan',
+      'half_width_m` must be a finite number: got nan',
     ),
     (
       lambda: gestures.v_codebook(half_width_m=0.0),
-      'corners_m` must not rest on one corner',
+      'half_width_m` must be between',
     ),
     (
       lambda: gestures.v_codebook(duration_s=-1.0),

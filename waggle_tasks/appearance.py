@@ -3,6 +3,7 @@
 import dataclasses
 
 from waggle_tasks import errors
+from waggle_tasks.protocol import checks
 
 FLOORS = ('honeycomb', 'plain')
 
@@ -27,14 +28,8 @@ class Appearance:
   shadows: bool = False
 
   def __post_init__(self) -> None:
-    if self.floor not in FLOORS:
-      raise AppearanceError(
-        f'`floor` must be one of {[*FLOORS]}: got {self.floor!r}'
-      )
-    if not 0.1 <= self.brightness <= 2.0:
-      raise AppearanceError(
-        f'`brightness` must be between 0.1 and 2: got {self.brightness!r}'
-      )
+    checks.choice('floor', self.floor, FLOORS, AppearanceError)
+    checks.number('brightness', self.brightness, 0.1, 2, AppearanceError)
     if not isinstance(self.shadows, bool):
       raise AppearanceError(
         f'`shadows` must be True or False: got {self.shadows!r}'

@@ -39,7 +39,7 @@ class Case:
 
   Attributes:
     name: Unique in its suite: lower case letters, digits, '-' and '_'.
-    group: What it is counted with; groups are never pooled.
+    group: What it is counted with, named alike; groups are never pooled.
     label: Its configuration, for tables.
     scene: Its scenario.
     published: What the paper gives for it, or None.
@@ -52,11 +52,15 @@ class Case:
   published: Published | None = None
 
   def __post_init__(self) -> None:
-    if not isinstance(self.name, str) or not _NAME.fullmatch(self.name):
-      raise SuiteError(
-        '`name` of a case must be lower case letters, digits, - and _, 64 at'
-        f' most: got {self.name!r}'
-      )
+    for field in ('name', 'group'):
+      value = getattr(self, field)
+      if not isinstance(value, str) or not _NAME.fullmatch(value):
+        raise SuiteError(
+          f'`{field}` of a case must be lower case letters, digits, - and _,'
+          f' 64 at most: got {value!r}'
+        )
+    if not isinstance(self.label, str):
+      raise SuiteError(f'`label` of a case must be text: got {self.label!r}')
 
 
 # name, label, correct, passed, changes
@@ -162,9 +166,9 @@ def from_rows(rows: Sequence[Mapping[str, object]]) -> tuple[Case, ...]:
     text = ', '.join(f'{key} = {value}' for key, value in changes.items())
     try:
       scene = registry.find(task, **_parts(changes))
+      cases.append(Case(name, group, label or text or task, scene))
     except errors.WaggleError as error:
       raise SuiteError(f'case {number} ({name}): {error}') from None
-    cases.append(Case(name, group, label or text or task, scene))
   names = [case.name for case in cases]
   if not names or len(set(names)) < len(names):
     raise SuiteError(

@@ -168,7 +168,12 @@ def v_codebook(
 
   Returns:
     The codebook.
+
+  Raises:
+    CodebookError: if a size is not one that can be flown.
   """
+  checks.number('half_width_m', half_width_m, 0.01, 1.2, CodebookError)
+  checks.number('start_height_m', start_height_m, 0.01, 2.0, CodebookError)
   w, h = half_width_m, start_height_m
   hover = (0.0, 0.0)
   return Codebook(
