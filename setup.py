@@ -34,6 +34,8 @@ setuptools.setup(
   name='waggle-tasks',
   version=version(),
   description='A motion-communication task suite for dm_control composer.',
+  long_description=(HERE / 'README.md').read_text(encoding='utf-8'),
+  long_description_content_type='text/markdown',
   author='The waggle_tasks authors',
   license='Apache-2.0',
   license_files=['LICENSE'],
