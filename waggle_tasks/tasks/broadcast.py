@@ -10,7 +10,7 @@ import numpy as np
 
 from waggle_tasks.arenas import flight_room, layouts
 from waggle_tasks.entities import controller, observer, performer
-from waggle_tasks.protocol import reference, timing
+from waggle_tasks.protocol import flight, reference, timing
 from waggle_tasks.tasks import actions, progress, safety
 from waggle_tasks.tasks import parts as parts_lib
 
@@ -110,6 +110,7 @@ class Broadcast(composer.Task):
     self._begin_dance()
     displacement_m = self._parts.message.displacement_m(self._parts.units)
     self._gates, self._progress = [], []
+    self._requests: dict[str, flight.Flight] = {}
     for name in self._observers:
       home_m = np.array(self._homes[name].position_m)
       hold = reference.Reference.hover(home_m)
@@ -165,21 +166,26 @@ class Broadcast(composer.Task):
     positions_m: Mapping[str, np.ndarray],
     time_s: float,
   ) -> None:
-    """Accepts or refuses the commands that begin with this step."""
-    requests = {
-      gate.name: plan
-      for gate, each in zip(self._gates, wanted, strict=True)
-      if (plan := gate.request(each, positions_m[gate.name], time_s))
-    }
-    if not requests:
+    """Accepts or refuses the commands that have waited for others."""
+    for gate, each in zip(self._gates, wanted, strict=True):
+      plan = gate.request(each, positions_m[gate.name], time_s)
+      if plan is not None:
+        self._requests.setdefault(gate.name, plan)
+    if not self._requests:
       return
     plans = {gate.name: gate.plan for gate in self._gates if gate.plan}
-    others = {**positions_m, **plans, **requests}
+    others = {**positions_m, **plans, **self._requests}
     for gate in self._gates:
-      if plan := requests.get(gate.name):
+      plan = self._requests.get(gate.name)
+      if plan and safety.is_due(plan, time_s):
         rest = {k: v for k, v in others.items() if k != gate.name}
         reason = safety.conflict(plan, rest, self._parts.minimum_spacing_m)
         gate.judge(plan, reason)
+    self._requests = {
+      name: plan
+      for name, plan in self._requests.items()
+      if not safety.is_due(plan, time_s)
+    }
 
   def after_step(
     self, physics: mjcf.Physics, random_state: np.random.RandomState

@@ -14,6 +14,10 @@ from waggle_tasks.protocol import flight, reference
 # Between two centres of mass. Vehicles are 0.137 m across their rotors, so
 # this leaves 2 cm.
 MINIMUM_SPACING_M = 0.16
+# How long a plan waits to be judged together with those of neighbours that
+# confirm the same message a few frames later. A minimum-jerk flight moves
+# less than 2 mm in that time, so the vehicle can hold its place.
+_PATIENCE_S = 0.2
 # A goal nearer than this to the hold position is no command.
 COMMAND_M = 0.01
 # How far a reference may be from the way that was judged.
@@ -35,6 +39,11 @@ class Refusal:
   time_s: float
   vehicle: str
   reason: str
+
+
+def is_due(plan: flight.Flight, time_s: float) -> bool:
+  """Whether a plan has waited long enough to be judged."""
+  return time_s > plan.begin_s + _PATIENCE_S - 1e-6
 
 
 def conflict(
