@@ -8,8 +8,9 @@ import setuptools
 HERE = pathlib.Path(__file__).parent
 FOLDERS = ('entities', 'arenas', 'agents', 'experiments')
 
+VIDEO = ('av>=14',)
 TEST = ('pytest>=8', 'pytest-xdist>=3', 'hypothesis>=6', 'setuptools>=77')
-DEV = (*TEST, 'ruff>=0.14', 'build>=1')
+DEV = (*TEST, *VIDEO, 'ruff>=0.14', 'build>=1')
 
 
 def version() -> str:
@@ -45,7 +46,7 @@ setuptools.setup(
     'waggle_tasks': 'waggle_tasks',
     **{f'waggle_tasks.{folder}': folder for folder in FOLDERS},
   },
-  package_data={'': ['*.xml', '*.json']},
+  package_data={'': ['*.xml', '*.json', '*.css', '*.js']},
   install_requires=[
     'absl-py>=2',
     'dm-control==1.0.50',
@@ -58,7 +59,7 @@ setuptools.setup(
     'scipy>=1.13',
     'tqdm>=4.60',
   ],
-  extras_require={'test': TEST, 'dev': DEV},
+  extras_require={'video': VIDEO, 'test': TEST, 'dev': DEV},
   entry_points={
     'console_scripts': ['waggle = waggle_tasks.experiments.main:main']
   },

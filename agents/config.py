@@ -2,10 +2,44 @@
 
 import dataclasses
 import math
+from typing import TypeVar
+
+from waggle_tasks import errors
+from waggle_tasks.protocol import checks
+
+_Group = TypeVar('_Group')
+_SMALLEST_PX = 5  # A smaller window holds no corner.
+
+
+class ReceiverError(errors.WaggleError):
+  """A receiver, or a number of one, that does not exist or cannot work."""
+
+
+class _Numbers:
+  """Checks the numbers of a group when it is made."""
+
+  def __post_init__(self) -> None:
+    for field in dataclasses.fields(self):
+      low, high = _LIMITS.get(field.name, (0, 1e6))
+      check = checks.integer if field.type is int else checks.number
+      check(field.name, getattr(self, field.name), low, high, ReceiverError)
+
+
+# Smallest and largest value that the tracker can work with.
+_LIMITS = {
+  'box_px': (8, 4096),
+  'max_corners': (1, 10_000),
+  'corner_quality': (1e-6, 1),
+  'window_px': (3, 255),
+  'levels': (0, 10),
+  'min_support': (1, 10_000),
+  'redetect_below': (0, 10_000),
+  'coast_frames': (0, 10_000),
+}
 
 
 @dataclasses.dataclass(frozen=True)
-class Tracking:
+class Tracking(_Numbers):
   """Feature tracking; the paper names the method and gives no numbers.
 
   Attributes:
@@ -39,7 +73,52 @@ class Tracking:
 
 
 @dataclasses.dataclass(frozen=True)
-class Motion:
+class Differencing:
+  """Tracking by difference from a learned background.
+
+  Attributes:
+    learn_s: How much stillness makes a background.
+    watch_px: Side of the square, in the middle, in which motion first shows.
+    min_contrast: Fewest grey levels between what is in the middle and what is
+      around it: less is nothing to look at.
+    min_levels: Weakest difference that counts in images without noise.
+    noise_levels: Noise above which difference energy in boxes is used...
+    box_px: ...of this side...
+    box_sigmas: ...so many standard deviations above that of noise alone.
+    watch_sigmas: The same while nothing but noise may be there.
+    speed_frames: Over how many images speed is measured...
+    speed_noise: ...in noise up to this; over more of them in more.
+    gate_widths: Half the side of the square around the target in which it is
+      looked for, in apparent widths...
+    gate_px: ...and so many pixels more.
+    lost_share: Smallest share of the hovering target's difference.
+    most_share: Largest share of it: a target that comes close grows.
+    separate_s: How long a first motion may take to leave its own ghost.
+    relearn_s: How long a target may be lost before all is learned anew.
+    max_gap_s: Longest time between two images of one rest.
+  """
+
+  learn_s: float = 1.5
+  watch_px: int = 240
+  min_contrast: float = 12.0
+  min_levels: int = 6
+  noise_levels: float = 1.5
+  box_px: int = 5
+  box_sigmas: float = 4.0
+  watch_sigmas: float = 8.0
+  speed_frames: int = 10
+  speed_noise: float = 8.0
+  gate_widths: float = 0.9
+  gate_px: float = 8.0
+  lost_share: float = 0.1
+  most_share: float = 6.0
+  separate_s: float = 4.0
+  relearn_s: float = 10.0
+  max_gap_s: float = 0.2
+
+
+@dataclasses.dataclass(frozen=True)
+class Motion(_Numbers):
   """When a gesture begins and ends (paper, section 'RGB optical flow').
 
   Attributes:
@@ -56,45 +135,138 @@ class Motion:
 
 
 @dataclasses.dataclass(frozen=True)
-class Recognition:
+class Excursion:
+  """When a gesture begins and ends, for a tracker of absolute positions.
+
+  Attributes:
+    radius_widths: How far from rest a target is away, in apparent widths...
+    radius_px: ...and at least so far...
+    on_s: ...once it has been so for this long.
+    off_px_s: Image speed below which it is at rest again (paper, section 'RGB
+      optical flow')...
+    off_s: ...once back for this long; shorter than the paper's, as speed is
+      measured over several images...
+    stay_s: ...or anywhere else for this long.
+    coast_frames: Lost frames that a gesture survives.
+    outside_s: How long it may be out of the picture.
+  """
+
+  radius_widths: float = 0.12
+  radius_px: float = 2.0
+  on_s: float = 0.08
+  off_px_s: float = 2.5
+  off_s: float = 0.48
+  stay_s: float = 3.0
+  coast_frames: int = 5
+  outside_s: float = 5.0
+
+
+@dataclasses.dataclass(frozen=True)
+class Views:
+  """Where a codebook may be seen from, and with what camera.
+
+  The camera is agreed: 640 x 480 pixels and a vertical field of view of 60
+  degrees (paper, section 'Scene, sensors, and information boundaries').
+
+  Attributes:
+    focal_px: Its focal length.
+    columns: Width of its picture in pixels...
+    rows: ...and the height.
+    max_angle_deg: Largest viewing angle to either side.
+    angles: How many, from one side to the other.
+    min_distance_m: Nearest view.
+    max_distance_m: Farthest view.
+    distances: How many, in equal ratios.
+  """
+
+  focal_px: float = 240 / math.tan(math.radians(30))
+  columns: int = 640
+  rows: int = 480
+  max_angle_deg: float = 85.0
+  angles: int = 35
+  min_distance_m: float = 0.5
+  max_distance_m: float = 4.0
+  distances: int = 13
+
+
+@dataclasses.dataclass(frozen=True)
+class Recognition(_Numbers):
   """When a path is a symbol (paper, section 'RGB optical flow').
 
   Attributes:
     max_rmse: Largest error to the best template.
     min_margin: Smallest lead over the second best.
     max_closure: Largest distance from end to beginning, in spans.
-    min_span_px: Smallest largest side of the path's bounding box.
+    min_span_px: Smallest largest side of the path's bounding box...
+    min_span_widths: ...in apparent widths of the target, where they are known.
   """
 
   max_rmse: float = 0.17
   min_margin: float = 0.075
   max_closure: float = 0.18
   min_span_px: float = 28.0
+  min_span_widths: float = 0.3
 
 
 @dataclasses.dataclass(frozen=True)
-class Stillness:
+class Stillness(_Numbers):
   """When stillness is a null (paper, section 'Visual null confirmation').
 
   Attributes:
     anchor_px: Largest distance from the initial image anchor.
     max_px_s: Largest image speed.
     hold_s: How long all of it must last.
+    null_quality: Smallest tracking quality.
   """
 
   anchor_px: float = 15.0
   max_px_s: float = 2.5
   hold_s: float = 3.0
+  null_quality: float = 0.2
 
 
 @dataclasses.dataclass(frozen=True)
 class Config:
-  """The paper's receiver with the paper's frozen thresholds."""
+  """A receiver; the defaults are the paper's with its frozen thresholds.
 
-  tracking: Tracking = Tracking()
-  motion: Motion = Motion()
+  Attributes:
+    tracking: How the target is followed; the type picks the tracker...
+    motion: ...and how its track is cut, which goes with it.
+    recognition: When a path is a symbol.
+    stillness: When stillness is a null.
+    views: Where gestures may be seen from; None for the front alone.
+  """
+
+  tracking: Tracking | Differencing = Tracking()
+  motion: Motion | Excursion = Motion()
   recognition: Recognition = Recognition()
   stillness: Stillness = Stillness()
+  views: Views | None = None
+
+
+VIEW_BANK = Config(Differencing(), Excursion(), views=Views())
+
+
+def zoomed(config: _Group, factor: float) -> _Group:
+  """The same numbers for a camera of another focal length.
+
+  Everything in pixels, which is told by the unit in its name, grows with the
+  focal length; times, shares and scores stay.
+
+  Args:
+    config: A configuration or one of its groups.
+    factor: The other camera's focal length over this one's, positive.
+  """
+  changes = {}
+  for field in dataclasses.fields(config):
+    value = getattr(config, field.name)
+    if dataclasses.is_dataclass(value):
+      changes[field.name] = zoomed(value, factor)
+    elif field.name.endswith(('_px', '_px_s')):
+      kind = type(value)
+      least = _SMALLEST_PX if kind is int else 0
+      changes[field.name] = max(kind(round(value * factor, 9)), least)
+  return dataclasses.replace(config, **changes)
 
 
 def lasted(since_s: float, now_s: float, duration_s: float) -> bool:

@@ -25,6 +25,7 @@ class Track:
     support: Features that survived all checks.
     quality: Their share of those that were followed.
     valid: Whether the support is enough.
+    outside: Whether it is lost because it has left the picture.
   """
 
   time_s: float
@@ -33,6 +34,7 @@ class Track:
   support: int
   quality: float
   valid: bool
+  outside: bool = False
 
   def loss(self, config: config_lib.Tracking) -> str:
     """Why the frame is not valid."""

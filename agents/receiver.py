@@ -1,12 +1,19 @@
-"""The paper's receiver: images and timestamps in, events out."""
+"""Receivers: images and timestamps in, events out."""
 
 import dataclasses
-from typing import Protocol
+from typing import ClassVar, Protocol
 
 import numpy as np
 
 from waggle_tasks.agents import config as config_lib
-from waggle_tasks.agents import klt, recogniser, segmenter, stillness
+from waggle_tasks.agents import (
+  klt,
+  recogniser,
+  segmenter,
+  stillness,
+  views,
+  watchers,
+)
 from waggle_tasks.protocol import frame, gestures, payload
 from waggle_tasks.protocol.symbols import Symbol
 
@@ -22,6 +29,9 @@ class Event:
     recognition: The scores of a motion; None for NULL.
     message: The payload, when the event completes a frame.
     rejection: Why the event broke a frame, when it did.
+    view_angle_deg: With a message, where the dance was seen from, see
+      `views.View`; None without a bank of views.
+    distance_m: The same.
   """
 
   time_s: float
@@ -30,6 +40,8 @@ class Event:
   recognition: recogniser.Recognition | None = None
   message: payload.Payload | None = None
   rejection: str | None = None
+  view_angle_deg: float | None = None
+  distance_m: float | None = None
 
 
 class Receiver(Protocol):
@@ -48,28 +60,33 @@ class Receiver(Protocol):
     ...
 
 
-class KltReceiver:
-  """Tracks, segments, recognises, confirms nulls and parses frames."""
+class StagedReceiver:
+  """Watches, recognises, confirms nulls and parses frames."""
+
+  DEFAULT: ClassVar[config_lib.Config]
 
   def __init__(
     self,
     codebook: gestures.Codebook,
-    config: config_lib.Config = config_lib.Config(),
+    config: config_lib.Config | None = None,
   ) -> None:
     """Makes a receiver at the beginning of an episode.
 
     Args:
       codebook: The agreed gestures.
-      config: The receiver's numbers.
+      config: The receiver's numbers; None for its own.
     """
-    tracking = config.tracking
-    self._tracker = klt.KltTracker(tracking)
-    self._segmenter = segmenter.Segmenter(config.motion, tracking)
-    self._recogniser = recogniser.Recogniser(codebook, config.recognition)
+    config = config or self.DEFAULT
+    self._watcher = watchers.make(config)
+    templates = views.templates(codebook, config.views)
+    self._recogniser = recogniser.Recogniser(
+      codebook, config.recognition, templates
+    )
     self._stillness = stillness.StillnessDetector(
-      config.stillness, tracking.max_gap_s
+      config.stillness, config.tracking.max_gap_s
     )
     self._parser = frame.Parser()
+    self._where: tuple[float | None, float | None] = None, None
     self.track: klt.Track | None = None
     self.segment: segmenter.Segment | None = None
 
@@ -83,14 +100,13 @@ class KltReceiver:
     Returns:
       The events that this image confirms; mostly none.
     """
-    self.track = self._tracker.step(image, time_s)
-    self.segment = self._segmenter.step(self.track)
+    watcher = self._watcher
+    self.track, self.segment = watcher.step(image, time_s)
     events = []
     if self.segment is not None:
       recognition = self._recogniser.recognise(self.segment)
       events.append(self._event(time_s, recognition.symbol, recognition))
-    moving = self._segmenter.active
-    if self._stillness.step(self.track, self._tracker.anchor_px, moving):
+    if self._stillness.step(self.track, watcher.anchor_px, watcher.moving):
       events.append(self._event(time_s, Symbol.NULL, None))
     return tuple(events)
 
@@ -102,10 +118,26 @@ class KltReceiver:
   ) -> Event:
     self._parser, outcome = self._parser.step(symbol)
     message = rejection = None
+    where = None, None
+    if recognition is not None:
+      self._where = recognition.view_angle_deg, recognition.distance_m
     if isinstance(outcome, frame.Message):
-      message = outcome.payload
+      message, where = outcome.payload, self._where
     elif isinstance(outcome, frame.Rejection):
       rejection = outcome.reason
     return Event(
-      time_s, symbol, self._parser.state, recognition, message, rejection
-    )
+      time_s, symbol, self._parser.state, recognition, message, rejection,
+      *where,
+    )  # fmt: skip
+
+
+class KltReceiver(StagedReceiver):
+  """The paper's receiver."""
+
+  DEFAULT = config_lib.Config()
+
+
+class ViewBankReceiver(StagedReceiver):
+  """Absolute positions, and gestures as they look from every side."""
+
+  DEFAULT = config_lib.VIEW_BANK

@@ -8,7 +8,7 @@ import dataclasses
 import numpy as np
 
 from waggle_tasks.agents import config as config_lib
-from waggle_tasks.agents import segmenter
+from waggle_tasks.agents import segmenter, views
 from waggle_tasks.protocol import gestures
 from waggle_tasks.protocol.symbols import MOTIONS, Symbol
 
@@ -25,6 +25,9 @@ class Recognition:
     margin: How much larger the second best's error is.
     closure: Distance from end to beginning, in spans.
     span_px: Largest side of the path's bounding box.
+    view_angle_deg: Where it is seen from, by all motions since START, see
+      `views.View`; None for UNKNOWN, and without a bank of views.
+    distance_m: The same.
   """
 
   symbol: Symbol
@@ -34,19 +37,30 @@ class Recognition:
   margin: float = 0.0
   closure: float = 0.0
   span_px: float = 0.0
+  view_angle_deg: float | None = None
+  distance_m: float | None = None
 
 
 class Recogniser:
-  """Compares paths with the templates of a codebook seen from the front."""
+  """Compares paths with templates of a codebook."""
 
   def __init__(
-    self, codebook: gestures.Codebook, config: config_lib.Recognition
+    self,
+    codebook: gestures.Codebook,
+    config: config_lib.Recognition,
+    templates: views.Templates | None = None,
   ) -> None:
+    """Makes a recogniser.
+
+    Args:
+      codebook: The agreed gestures.
+      config: The limits.
+      templates: What to compare with; None for the codebook seen from the
+        front.
+    """
     self._config = config
-    self._templates = {
-      symbol: gestures.normalise(codebook[symbol].image_path())
-      for symbol in MOTIONS
-    }
+    self._templates = templates or views.frontal(codebook)
+    self._sightings = views.Sightings(self._templates)
 
   def recognise(self, segment: segmenter.Segment) -> Recognition:
     """Names the gesture of a segment, or says why it has none."""
@@ -55,17 +69,18 @@ class Recogniser:
     if segment.loss:
       reason = f'track lost: {segment.loss}'
       return Recognition(Symbol.UNKNOWN, reason, span_px=span_px)
-    if span_px < self._config.min_span_px:
-      reason = f'span {span_px:.1f} px < {self._config.min_span_px:g} px'
+    if reason := self._small(span_px, segment.width_px):
       return Recognition(Symbol.UNKNOWN, reason, span_px=span_px)
-    points = gestures.normalise(path_px)
-    ranked = sorted(
-      (gestures.separation(points, template), symbol)
-      for symbol, template in self._templates.items()
-    )
+    errors = self._templates.errors(gestures.normalise(path_px))  # (4, V)
+    ranked = sorted(zip(errors.min(axis=1).tolist(), MOTIONS, strict=True))
     (rmse, best), (second, _) = ranked[:2]
     closure = float(np.hypot(*(path_px[-1] - path_px[0]))) / span_px
     reason = self._reason(rmse, second - rmse, closure)
+    if best is Symbol.START:  # A new message, maybe of someone else.
+      self._sightings = views.Sightings(self._templates)
+    where = None, None
+    if not reason:
+      where, reason = self._locate(best, errors, span_px)
     return Recognition(
       Symbol.UNKNOWN if reason else best,
       reason,
@@ -74,7 +89,32 @@ class Recogniser:
       second - rmse,
       closure,
       span_px,
+      *where,
     )
+
+  def _locate(
+    self, symbol: Symbol, errors: np.ndarray, span_px: float
+  ) -> tuple[tuple[float | None, float | None], str]:
+    """Angle and distance, or why a motion does not belong to those before."""
+    seen, limit = self._sightings, self._config.max_rmse
+    fits = seen.fitting(symbol, errors, span_px, limit)
+    if not fits.any():
+      reason = f'no view of {symbol} fits its size and the motions before'
+      return (None, None), reason
+    seen.add(symbol, errors, span_px, fits)
+    view = seen.view()
+    if view is None:
+      return (None, None), ''
+    return (view.angle_deg, view.distance_m), ''
+
+  def _small(self, span_px: float, width_px: float | None) -> str:
+    config = self._config
+    if width_px is None:
+      limit_px, rule = config.min_span_px, f'{config.min_span_px:g} px'
+    else:
+      limit_px = config.min_span_widths * width_px
+      rule = f'{config.min_span_widths:g} widths of {width_px:.1f} px'
+    return f'span {span_px:.1f} px < {rule}' if span_px < limit_px else ''
 
   def _reason(self, rmse: float, margin: float, closure: float) -> str:
     config = self._config

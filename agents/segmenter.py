@@ -21,12 +21,14 @@ class Segment:
     end_s: When it came to rest.
     path_px: (T, 2) the track in between, x right and y down.
     loss: Why the track was lost on the way, or None.
+    width_px: How wide the target is, where the tracker knows.
   """
 
   begin_s: float
   end_s: float
   path_px: np.ndarray
   loss: str | None = None
+  width_px: float | None = None
 
 
 class Segmenter:

@@ -1,9 +1,10 @@
 """Flies one dance; every observer reads it from its own camera and follows it.
 
 Prints a table with a line for each observer and the verdict on the group, and
-leaves a run folder: config.json, events.jsonl, result.json and
-provenance.json. Exit status 0 when the group passed, 1 when it did not, 2 on
-bad input.
+leaves a run folder: index.html is its report, to be opened in a browser, made
+from the data beside it. --video films the episode, --raw keeps every image
+that a receiver took. Exit status 0 when the group passed, 1 when it did not, 2
+on bad input.
 """
 
 from collections.abc import Sequence
@@ -22,14 +23,17 @@ from waggle_tasks.experiments import (
   evaluator,
   launch,
   provenance,
+  recording_flags,
   records,
   scenario_flags,
   table,
 )
 from waggle_tasks.experiments import rollout as rollout_lib
+from waggle_tasks.experiments.pages import document
 from waggle_tasks.protocol import timing
 
 scenario_flags.define()
+recording_flags.define()
 _RECEIVER = flags.DEFINE_string(
   'receiver',
   'klt',
@@ -48,18 +52,23 @@ def main(argv: Sequence[str]) -> int:
   command = provenance.command_line('broadcast', launch.given_flags())
   with records.new_folder(folder) as draft:
     began = datetime.datetime.now(datetime.UTC)
-    rollout = _roll(scene, _RECEIVER.value)
+    with recording_flags.recorders(draft, scene) as watchers:
+      rollout = _roll(scene, _RECEIVER.value, watchers)
     verdict = evaluator.evaluate(scene, rollout)
     records.write_run(
       draft, scene, _RECEIVER.value, rollout, verdict,
       provenance.Provenance.of(command, rollout.renderer, began),
     )  # fmt: skip
   print(report(scene, verdict))
-  print(f'Run folder: {folder}')
+  print(f'Run folder: {folder}, report: {folder / document.NAME}')
   return 0 if verdict.passed else 1
 
 
-def _roll(scene: scenario.Scenario, receiver_name: str) -> rollout_lib.Rollout:
+def _roll(
+  scene: scenario.Scenario,
+  receiver_name: str,
+  watchers: Sequence[rollout_lib.Watcher],
+) -> rollout_lib.Rollout:
   """Runs the episode behind a progress bar of simulated seconds."""
   frames = timing.frames(scene.episode_s)
   form = '{desc}: {percentage:3.0f}%|{bar}| {n:.0f}/{total:.0f} s'
@@ -77,7 +86,7 @@ def _roll(scene: scenario.Scenario, receiver_name: str) -> rollout_lib.Rollout:
       if not timestep.first():
         bar.update(timing.FRAME_S)
 
-    return rollout_lib.run(scene, receiver_name, [watch])
+    return rollout_lib.run(scene, receiver_name, [*watchers, watch])
 
 
 def report(scene: scenario.Scenario, verdict: evaluator.Verdict) -> str:

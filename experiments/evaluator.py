@@ -83,7 +83,9 @@ class Verdict:
 
 def expected_bits(scene: scenario.Scenario, number: int) -> str | None:
   """What observer `number`, from 1, should read; None for nothing."""
-  if scene.control in ('no_send', 'interrupted'):
+  if scene.control == 'no_send':
+    return None
+  if scene.control == 'interrupted' and scene.stop_s < scene.schedule.end_s:
     return None
   if scene.control == 'black_input' and number == scene.black_observer:
     return None

@@ -14,10 +14,14 @@ from waggle_tasks.experiments import launch
 # Name of a module in this folder -> what it does, in one line.
 COMMANDS = {
   'broadcast': 'Fly one dance and let every observer read and follow it.',
+  'decode': "Read a run's raw captures again, or any video of a dance.",
+  'report': "Make a run's or a suite's page again from its data.",
+  'gallery': 'Make the pictures of the documentation.',
   'suite': "Run the paper's evaluation, or your own, beside its results.",
   'bench': 'Measure images, the loop and whole broadcasts on this machine.',
   'sensitivity': 'Move each open choice both ways and show what changes.',
   'boundary': 'Show that receivers use their own images and nothing else.',
+  'bench_video': 'Time a run with and without its video and report.',
   'doctor': 'Check that this machine can run the tasks, and say what to mend.',
 }
 

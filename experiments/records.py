@@ -12,8 +12,10 @@ import shutil
 import numpy as np
 
 from waggle_tasks import errors, scenario
-from waggle_tasks.experiments import evaluator, provenance
+from waggle_tasks.experiments import archive, evaluator, provenance
 from waggle_tasks.experiments import rollout as rollout_lib
+from waggle_tasks.experiments import traces as traces_lib
+from waggle_tasks.experiments.pages import run_page
 from waggle_tasks.protocol import payload
 
 
@@ -60,8 +62,13 @@ def event_lines(rollout: rollout_lib.Rollout) -> Iterator[str]:
   ]
   rows.sort(key=lambda row: row[0])  # Stable: observers keep their order.
   for _, name, event in rows:
-    kind = type(event).__name__.lower()
-    yield dumps({'observer': name, 'kind': kind, **to_json(event)})
+    yield event_line(name, event)
+
+
+def event_line(name: str, event: rollout_lib.Event) -> str:
+  """An observer's event as a line of the event log."""
+  kind = type(event).__name__.lower()
+  return dumps({'observer': name, 'kind': kind, **to_json(event)})
 
 
 def dumps(value: object) -> str:
@@ -85,17 +92,18 @@ def new_folder(path: pathlib.Path) -> Iterator[pathlib.Path]:
   """
   check_free(path)
   draft = path.with_name(f'.{path.name}.{os.getpid()}.draft')
+  made = [parent for parent in draft.parents if not parent.exists()]
   try:
     draft.mkdir(parents=True)
-  except OSError as error:
-    raise _refused(path, error) from None
-  try:
     yield draft
     os.rename(draft, path)
   except OSError as error:
     raise _refused(path, error) from None
   finally:
     shutil.rmtree(draft, ignore_errors=True)
+    for parent in made:  # The innermost first; those in use stay.
+      with contextlib.suppress(OSError):
+        parent.rmdir()
 
 
 def check_free(path: pathlib.Path) -> None:
@@ -141,6 +149,9 @@ def write_run(
   }
   for name, text in texts.items():
     (folder / name).write_text(text, encoding='utf-8')
+  traces_lib.save(folder / archive.TRACES, rollout.traces)
+  archive.save_positions(folder / archive.POSITIONS, rollout)
+  run_page.write(folder)
 
 
 def pretty(value: object) -> str:

@@ -1,11 +1,11 @@
 """Runs a suite of broadcasts and sets the results beside the paper's.
 
-Leaves results.jsonl, results.csv and a run folder for each case. Ended at any
-moment, the same command goes on where it was. Exit status 0 when every case
-gave what is published for it, or passed where nothing is; 1 otherwise; 2 on
-bad input. A suite of your own is a JSON list of cases, each with a `name` and
-the fields of a scenario that it changes. `--compare A B` sets two result
-folders side by side and runs nothing.
+Leaves index.html, results.jsonl, results.csv and a run folder for each case.
+Ended at any moment, the same command goes on where it was. Exit status 0 when
+every case gave what is published for it, or passed where nothing is; 1
+otherwise; 2 on bad input. A suite of your own is a JSON list of cases, each
+with a `name` and the fields of a scenario that it changes. `--compare A B`
+sets two result folders side by side and runs nothing.
 """
 
 from collections.abc import Sequence
@@ -25,6 +25,7 @@ from waggle_tasks.experiments import (
   suite_runner,
   suite_tables,
 )
+from waggle_tasks.experiments.pages import suite_page
 from waggle_tasks.protocol import checks, gestures
 
 ARGUMENTS = '[B]'
@@ -73,11 +74,12 @@ def main(argv: Sequence[str]) -> int:
   began_s = time.monotonic()
   rows = suite_runner.run(cases, _RECEIVER.value, folder, workers, command)
   wall_s = time.monotonic() - began_s
+  page = suite_page.write(folder)
   print(suite_tables.report(rows))
   simulated_s = sum(row['simulated_s'] for row in rows)
   print(
     f'\n{len(rows)} cases, {simulated_s:.0f} s simulated, {wall_s:.0f} s of'
-    f' wall time in this call with {workers} workers, {folder}'
+    f' wall time in this call with {workers} workers, {page}'
   )
   return 0 if all(map(_as_expected, rows)) else 1
 

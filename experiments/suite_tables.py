@@ -46,10 +46,10 @@ def _group(group: str, rows: Sequence[Row]) -> str:
         theirs[1], '' if same else 'differs',
       )
     )  # fmt: skip
-  return '\n'.join([table.render(header, cells), *_totals(rows)])
+  return '\n'.join([table.render(header, cells), *totals(rows)])
 
 
-def _totals(rows: Sequence[Row]) -> list[str]:
+def totals(rows: Sequence[Row]) -> list[str]:
   """The sums of a group and their intervals."""
   correct = [row['correct'] for row in rows]
   exposures = [row['observers'] for row in rows]

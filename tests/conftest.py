@@ -9,21 +9,19 @@ import dataclasses
 import math
 
 import dm_env
+import hypothesis
 import numpy as np
 import pytest
 
 from waggle_tasks import registry
 from waggle_tasks.protocol import flight, gestures, reference, timing
 
+# A busy machine is slow, which is no failure.
+hypothesis.settings.register_profile('patient', deadline=None)
+hypothesis.settings.load_profile('patient')
+
 Observations = Sequence[dict[str, np.ndarray]]
 Agent = Callable[[Observations], list[np.ndarray]]
-
-
-def pytest_configure(config: pytest.Config) -> None:
-  """Declares xdist's mark, so that tests run without xdist too."""
-  config.addinivalue_line(
-    'markers', 'xdist_group(name): run by one worker, with `--dist loadgroup`'
-  )
 
 
 @pytest.fixture(scope='session')
@@ -55,9 +53,9 @@ class Clip:
 
 @pytest.fixture(scope='session')
 def clip(short: dict[str, object]) -> Clip:
-  """The front view of a null, START, a null, 0 and a null: 15.2 s."""
+  """The front view of a null, START, a null, 0 and a null: 15.8 s."""
   environment = registry.load(
-    'broadcast', observers=1, duration_s=15.2, **short
+    'broadcast', observers=1, duration_s=15.8, **short
   )
   images, times_s, target_px = [], [], []
   timestep = environment.reset()

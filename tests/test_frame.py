@@ -101,9 +101,12 @@ def damaged(draw: st.DrawFn) -> list[Symbol]:
   events = whole(draw(BITS))
   for _ in range(draw(st.integers(0, 3))):
     place = draw(st.integers(0, max(len(events) - 1, 0)))
-    match draw(st.sampled_from(['drop', 'repeat', 'insert', 'swap', 'cut'])):
+    kinds = ['drop', 'repeat', 'insert', 'replace', 'swap', 'cut']
+    match draw(st.sampled_from(kinds)):
       case 'drop':
         del events[place : place + 1]
+      case 'replace':
+        events[place : place + 1] = [draw(SYMBOLS)]
       case 'repeat':
         events[place:place] = events[place : place + 1]
       case 'insert':
@@ -121,7 +124,7 @@ SEQUENCES = st.lists(PIECES, min_size=1, max_size=4).map(
 )
 
 
-@hypothesis.settings(max_examples=600, deadline=None)
+@hypothesis.settings(max_examples=600)
 @hypothesis.given(SEQUENCES)
 def test_a_message_is_accepted_iff_the_last_17_events_are_a_whole_frame(
   events: list[Symbol],
@@ -134,7 +137,7 @@ def test_a_message_is_accepted_iff_the_last_17_events_are_a_whole_frame(
       assert outcome.payload.bits == ''.join(last[3:15:2])
 
 
-@hypothesis.settings(max_examples=600, deadline=None)
+@hypothesis.settings(max_examples=600)
 @hypothesis.given(SEQUENCES)
 def test_each_break_has_a_reason_and_nothing_else_has(
   events: list[Symbol],
@@ -153,7 +156,7 @@ def test_each_break_has_a_reason_and_nothing_else_has(
       assert f', got {event}, after ' in outcome.reason
 
 
-@hypothesis.settings(max_examples=100, deadline=None)
+@hypothesis.settings(max_examples=100)
 @hypothesis.given(SEQUENCES, BITS)
 def test_whatever_came_before_a_whole_frame_is_read(
   events: list[Symbol], bits: str
@@ -237,6 +240,13 @@ def test_a_new_start_begins_a_new_frame() -> None:
   events = [NULL, START, NULL, ONE, *whole('000110')]
   assert messages(events) == ['000110']
   assert len(reasons([*events[:5], START])) == 1
+
+
+@pytest.mark.parametrize('read', range(1, 17, 2))
+def test_a_start_after_any_null_begins_anew(read: int) -> None:
+  begun = whole('111111')[:read]
+  assert begun[-1] is NULL
+  assert messages(begun + whole('000110')[1:]) == ['000110']
 
 
 def test_a_parser_is_a_value() -> None:

@@ -61,7 +61,7 @@ def expected() -> set[str]:
   names = set()
   for folder, place in places.items():
     for path in (ROOT / folder).rglob('*'):
-      if path.suffix in ('.py', '.xml', '.json'):
+      if path.suffix in ('.py', '.xml', '.json', '.css', '.js'):
         names.add(f'{place}/{path.relative_to(ROOT / folder).as_posix()}')
     names |= {
       f'{place}/new_package/__init__.py',

@@ -3,6 +3,9 @@
 from collections.abc import Callable
 import dataclasses
 import math
+import os
+import subprocess
+import sys
 
 from dm_control import composer
 import numpy as np
@@ -159,3 +162,22 @@ def test_each_reset_draws_its_own_jitter(load: Load) -> None:
     positions_m = environment.task.positions_m(environment.physics)
     places_m.append(positions_m['observer_1'])
   assert np.abs(places_m[0] - places_m[1]).max() > 1e-4
+
+
+def test_dm_control_may_be_imported_first_where_there_is_no_display() -> None:
+  """As sorted imports do; the GL backend must be chosen all the same."""
+  code = (
+    'from dm_control import composer, mjcf; import waggle_tasks;'
+    "env = waggle_tasks.load('no_send', observers=1, duration_s=0.04);"
+    "print(env.reset().observation[0]['camera'].shape); env.close()"
+  )
+  hidden = ('DISPLAY', 'WAYLAND_DISPLAY', 'MUJOCO_GL')
+  environ = {k: v for k, v in os.environ.items() if k not in hidden}
+  child = subprocess.run(
+    [sys.executable, '-c', code],
+    capture_output=True,
+    text=True,
+    check=False,
+    env=environ,
+  )
+  assert child.stdout == '(480, 640, 3)\n', child.stderr

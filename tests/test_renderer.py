@@ -1,6 +1,7 @@
 """Pictures drawn in parts are the pictures that are drawn at once."""
 
 from collections.abc import Callable, Iterator
+import itertools
 import math
 
 from dm_control import mjcf
@@ -175,6 +176,19 @@ def test_only_what_moves_is_drawn(
   after = stage.image(eye)
   assert 0 < sum(drawn_px) < WHOLE_PX / 20
   assert (before != after).any()
+
+
+def test_motions_of_a_fraction_of_a_pixel_are_seen(
+  studio: Callable[..., Studio],
+) -> None:
+  stage = studio(2)
+  eye = stage.camera()
+  pictures = []
+  for step in range(12):
+    stage.place(0, np.array([2e-4 * step, 0.0, 1.3 + 1e-4 * step]))
+    pictures.append(stage.image(eye))
+    np.testing.assert_array_equal(pictures[-1], stage.full(eye))
+  assert all((a != b).any() for a, b in itertools.pairwise(pictures))
 
 
 def test_what_is_out_of_view_is_not_drawn(

@@ -156,6 +156,10 @@ def test_a_reference_stays_on_its_accepted_way(
     assert gate.refusal == safety.Refusal(1.04, 'observer_1', reason)
     np.testing.assert_array_equal(followed.position_m, first.position_m)
     np.testing.assert_array_equal(followed.velocity_mps, 0)
+    # Coming back to the way does not undo it.
+    again = gate.follow(first, 1.08)
+    np.testing.assert_array_equal(again.velocity_mps, 0)
+    assert again is not first
 
 
 def fly(
@@ -198,6 +202,35 @@ def test_all_fly_one_message_at_once(
   moved_m = fly(environment, [(0, 0.4, 0)] * 3, 80)
   np.testing.assert_allclose(moved_m, [(0, 0.4, 0)] * 3, atol=1e-3)
   assert environment.task.refusals == ()
+
+
+def test_neighbours_whose_nulls_are_a_few_frames_apart_all_fly(
+  load: Load,
+) -> None:
+  """As five at the default geometry are, when a message leads sideways."""
+  layout = Places(((-0.34, -1.3), (0.0, -1.3)))
+  environment = load('broadcast', cameras=False, observers=2, layout=layout)
+  begins_m = [o['position_m'] for o in environment.reset().observation]
+  way_m = np.array([-0.4, 0.0, 0.0])
+  flights = [
+    flight.Flight(begin_m, begin_m + way_m, begin_s)
+    for begin_m, begin_s in zip(begins_m, (0.12, 0.0), strict=True)
+  ]
+  for step in range(90):
+    time_s = step * 0.04
+    action = [
+      reference.Reference.hover(each.begin_m).to_array()
+      if time_s < each.begin_s - 1e-6
+      else reference.Reference(
+        *each.motion(time_s + 0.02), 0.0, each.goal_m
+      ).to_array()
+      for each in flights
+    ]
+    timestep = environment.step(action)
+    assert timestep.discount == 1
+  assert environment.task.refusals == ()
+  for each, begin_m in zip(timestep.observation, begins_m, strict=True):
+    np.testing.assert_allclose(each['position_m'] - begin_m, way_m, atol=1e-3)
 
 
 def test_who_would_hit_one_that_stays_is_refused_and_holds(load: Load) -> None:

@@ -123,7 +123,7 @@ def test_a_number_that_is_not_finite_is_refused(
   [
     (
       lambda: Scenario(codebook=gestures.v_codebook(half_width_m=math.nan)),
-      'corners_m` must be a finite number: got nan',
+      '`half_width_m` must be a finite number: got nan',
     ),
     (
       lambda: Scenario(codebook=gestures.v_codebook(duration_s=math.nan)),

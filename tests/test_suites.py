@@ -48,8 +48,8 @@ def test_the_paper_suite_is_the_three_groups_one_after_the_other() -> None:
   groups = ('standard', 'supplemental', 'controls')
   expected = [each for name in groups for each in suites.find(name)]
   assert list(suites.find('paper')) == expected
-  assert len(expected) == 23
-  assert len({each.name for each in expected}) == 23
+  assert len(suites.find('controls')) == 3
+  assert len({each.name for each in expected}) == len(expected) == 23
   for name in groups:
     assert {each.group for each in suites.find(name)} == {name}
 
@@ -126,10 +126,6 @@ def test_a_control_is_the_papers(
     assert found.scene.black_observer == 2
   if control == 'interrupted':
     assert found.scene.stop_s == 26.0
-
-
-def test_there_are_three_controls() -> None:
-  assert len(suites.find('controls')) == 3
 
 
 @pytest.mark.parametrize('name', suites.SUITES)
@@ -221,10 +217,8 @@ def test_what_json_can_write_can_be_a_suite() -> None:
     ({'distance_m': -1.0}, '`distance_m` must be between 0.2 and 4: got -1.0'),
     ({'distance_m': '1'}, "`distance_m` must be a finite number: got '1'"),
     ({'distance_m': float('nan')}, '`distance_m` must be a finite number: got'),
-    ({'distance_m': None}, '`distance_m` must be a finite number: got None'),
     ({'jitter_m': float('inf')}, '`jitter_m` must be a finite number: got inf'),
     ({'observers': 0}, '`observers` must be between 1 and 64: got 0'),
-    ({'observers': 2.0}, '`observers` must be an integer: got 2.0'),
     ({'observers': True}, '`observers` must be an integer: got True'),
     ({'observers': [1]}, r'`observers` must be an integer: got \[1\]'),
     ({'observers': 64, 'distance_m': 0.2}, 'must start at least .* m apart'),
@@ -232,15 +226,11 @@ def test_what_json_can_write_can_be_a_suite() -> None:
     ({'payload': 10}, '`payload` must be 6 characters .* got 10'),
     ({'duration_s': 0}, '`duration_s` must be between 0.04 and 600: got 0'),
     ({'layout': 'ring'}, r"`layout` must be one of \['arc', 'line'\]: got"),
-    ({'layout': 'ac'}, 'Did you mean arc'),
     ({'layout': {'radius_m': 1.0}}, '`layout` must be .*: got'),
     ({'layout': ['arc']}, '`layout` must be .*: got'),
-    ({'layout': None}, '`layout` must be .*: got None'),
     ({'task': 'nosend'}, '`task` must be .*Did you mean no_send'),
-    ({'task': None}, '`task` must be one of .*: got None'),
     ({'control': 'none '}, "`control` must be one of .*: got 'none '"),
     ({'pauses': 3}, '`pauses` must be a Timing: got 3'),
-    ({'pauses': [4, 1, 2, 1]}, '`pauses` must be a Timing'),
     ({'pauses': None}, '`pauses` must be a Timing: got None'),
     ({'pauses': {'gap': 2}}, "got 'gap'. Did you mean gap_s"),
     ({'pauses': {'gap_s': -1}}, '`gap_s` must be between 0 and 60: got -1'),

@@ -18,6 +18,7 @@ __all__ = ['__version__', 'load']
 
 if _gl := runtime.default_gl(os.environ, sys.platform):
   os.environ['MUJOCO_GL'] = _gl
+  runtime.choose_again(sys.modules)
 if not runtime.reports_versions(sys.argv, sys.orig_argv):
   runtime.require_versions()
 

@@ -5,10 +5,12 @@ pair is named in one sentence instead of failing deep inside a simulation.
 """
 
 from collections.abc import Mapping, Sequence
+import importlib
 from importlib import metadata
 import itertools
 import pathlib
 import re
+import types
 
 # dm-control 1.0.50 declares mujoco>=3.17 with no upper end, but every Physics
 # of it fails on mujoco 4.0, where `MjModel.flex_vertedge` is gone.
@@ -42,6 +44,18 @@ def default_gl(environ: Mapping[str, str], platform: str) -> str | None:
   if environ.get('DISPLAY') or environ.get('WAYLAND_DISPLAY'):
     return None
   return 'egl'
+
+
+def choose_again(modules: Mapping[str, types.ModuleType]) -> None:
+  """Lets dm_control choose its GL backend anew, if it has chosen already.
+
+  It chooses when it is imported, which may be before this package.
+
+  Args:
+    modules: `sys.modules`, with MUJOCO_GL set in the environment.
+  """
+  if 'dm_control._render' in modules:
+    importlib.reload(modules['dm_control._render'])
 
 
 def installed(name: str) -> str | None:

@@ -1,0 +1,183 @@
+"""Tells where a target is, in every image on its own: nothing adds up."""
+
+from collections import deque
+import math
+
+import cv2
+import numpy as np
+
+from waggle_tasks.agents import config as config_lib
+from waggle_tasks.agents import difference, hover, klt
+from waggle_tasks.agents import ghost as ghost_lib
+
+_REPAIRS = 25  # Images that the background behind the hover is made from.
+# A target that is sought in the whole picture must be this much of itself.
+_MIN_SHARE, _MAX_SHARE = 0.3, 3.0
+
+
+class AbsoluteTracker:
+  """Follows one target that begins near the middle of the image.
+
+  While it hovers its position is not known, only that it has not moved; once
+  it has left its ghost, the images since then are looked at again.
+
+  Attributes:
+    ghost: Where it hovered; None as long as it has not moved.
+  """
+
+  def __init__(self, config: config_lib.Differencing) -> None:
+    self._config = config
+    self._hover = hover.Hover(config)
+    self._follower: Follower | None = None
+    self.ghost: ghost_lib.Ghost | None = None
+    self.anchor_px: np.ndarray | None = None
+
+  def step(self, image: np.ndarray, time_s: float) -> list[klt.Track]:
+    """Takes one image.
+
+    Args:
+      image: (H, W, 3) uint8 RGB; it is not kept.
+      time_s: Its time, later than the last one's.
+
+    Returns:
+      The target in this image; when it has just left its ghost, in all images
+      since its motion began, of which this is the last.
+    """
+    if self._follower is None:
+      return self._wait(image, time_s)
+    track = self._follower.step(image, time_s)
+    if self._follower.lost_s(time_s) > self._config.relearn_s:
+      self._hover, self._follower = hover.Hover(self._config), None
+      self.ghost = self.anchor_px = None
+    return [track]
+
+  def _wait(self, image: np.ndarray, time_s: float) -> list[klt.Track]:
+    departure = self._hover.step(image, time_s)
+    if departure is not None:
+      self.ghost = departure.ghost
+      self.anchor_px = departure.ghost.anchor_px
+      self._follower = Follower(self._config, departure)
+      return [self._follower.step(grey, at) for at, grey in departure.greys]
+    # Somewhere in the middle: all that is known before it moves.
+    middle_px = np.array([image.shape[1], image.shape[0]]) / 2
+    visible = self._hover.visible
+    self.anchor_px = middle_px if visible else None
+    return [klt.Track(time_s, middle_px, 0.0, 0, float(visible), visible)]
+
+
+class Follower:
+  """Follows a target whose background is known."""
+
+  def __init__(
+    self, config: config_lib.Differencing, departure: hover.Departure
+  ) -> None:
+    """Begins where the target hovered.
+
+    Args:
+      config: The tracker's numbers.
+      departure: The target and what is behind it; its background is repaired
+        where the target was.
+    """
+    self._config = config
+    self._detector = departure.detector
+    self._background = departure.background
+    self._ghost = departure.ghost
+    left, top, right, bottom = departure.ghost.box
+    self._home = slice(top, bottom), slice(left, right)
+    _, last = departure.greys[-1]
+    self._behind = last[self._home].astype(np.float32)
+    self._background[self._home] = last[self._home]
+    self._repairs = 1
+    self._centre_px = departure.ghost.anchor_px
+    frames = config.speed_frames
+    if self._detector.noise > config.speed_noise:
+      frames = round(frames * self._detector.noise / config.speed_noise)
+    self._recent: deque[tuple[float, float, float]] = deque(maxlen=frames)
+    self._seen_s = math.inf
+
+  def lost_s(self, time_s: float) -> float:
+    """For how long the target has not been seen."""
+    return max(time_s - self._seen_s, 0.0)
+
+  def step(self, image: np.ndarray, time_s: float) -> klt.Track:
+    """Takes an image, (H, W, 3) uint8 RGB or (H, W) uint8 grey."""
+    self._size = image.shape[1], image.shape[0]
+    gate, config = self._gate(), self._config
+    weights = self._weights(image, gate, config.box_sigmas)
+    total, centre_px = difference.centroid(
+      weights, (gate[1].start, gate[0].start)
+    )
+    share = total / self._ghost.total
+    outside = self._at_edge()
+    if not config.lost_share <= share <= config.most_share:
+      found = None if outside else self._search(image)
+      if found is None:
+        self._recent.clear()
+        quality = min(share, 1.0)
+        return klt.Track(
+          time_s, self._centre_px, 0.0, 0, quality, False, outside
+        )
+      share, centre_px = found
+    self._repair(image, gate)
+    self._centre_px, self._seen_s = centre_px, time_s
+    self._recent.append((time_s, *centre_px))
+    support = cv2.countNonZero(weights)
+    return klt.Track(
+      time_s, centre_px, _speed(self._recent), support, min(share, 1.0), True
+    )
+
+  def _gate(self) -> tuple[slice, slice]:
+    """The square in which the target must be."""
+    config, (width, height) = self._config, self._size
+    half_px = config.gate_widths * self._ghost.width_px + config.gate_px
+    x, y = self._centre_px
+    return (
+      slice(max(int(y - half_px), 0), min(int(y + half_px) + 1, height)),
+      slice(max(int(x - half_px), 0), min(int(x + half_px) + 1, width)),
+    )
+
+  def _at_edge(self) -> bool:
+    """Whether the target was last seen where it may leave the picture."""
+    reach_px = self._ghost.width_px / 2 + self._config.gate_px
+    inside_px = np.minimum(self._centre_px, self._size - self._centre_px)
+    return bool(inside_px.min() < reach_px)
+
+  def _weights(
+    self, image: np.ndarray, box: tuple[slice, slice], sigmas: float
+  ) -> np.ndarray:
+    return self._detector.weights(
+      difference.grey(image, box), self._background[box], sigmas
+    )
+
+  def _search(self, image: np.ndarray) -> tuple[float, np.ndarray] | None:
+    """Finds the target anywhere: its share and centre, if there is just one."""
+    whole = slice(0, self._size[1]), slice(0, self._size[0])
+    weights = self._weights(image, whole, self._config.watch_sigmas)
+    blobs = difference.Blobs(weights)
+    shares = blobs.totals / self._ghost.total
+    (picked,) = np.nonzero((shares > _MIN_SHARE) & (shares < _MAX_SHARE))
+    if len(picked) != 1:
+      return None
+    _, centre_px = difference.centroid(blobs.only(picked), (0, 0))
+    return float(shares[picked[0]]), centre_px
+
+  def _repair(self, image: np.ndarray, gate: tuple[slice, slice]) -> None:
+    """Averages what is behind the hovering target while it is away."""
+    apart = any(
+      a.stop <= b.start or b.stop <= a.start
+      for a, b in zip(gate, self._home, strict=True)
+    )
+    if self._detector.noisy and self._repairs < _REPAIRS and apart:
+      self._behind += difference.grey(image, self._home)
+      self._repairs += 1
+      self._background[self._home] = np.rint(self._behind / self._repairs)
+
+
+def _speed(recent: deque[tuple[float, float, float]]) -> float:
+  """Speed of the straight line that fits positions best, per second."""
+  if len(recent) < 2:
+    return 0.0
+  table = np.array(recent)
+  table -= table.mean(axis=0)
+  slope = table[:, 0] @ table[:, 1:] / (table[:, 0] @ table[:, 0])
+  return math.hypot(*slope)

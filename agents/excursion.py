@@ -1,0 +1,129 @@
+"""Cuts a track of absolute positions into gestures: away from rest and back."""
+
+from collections import deque
+import math
+
+import numpy as np
+
+from waggle_tasks.agents import config as config_lib
+from waggle_tasks.agents import klt, segmenter
+
+_MEAN = np.ones(5)
+_STEP = 0.02  # Of the span.
+_LEAD = 25  # Frames before a target is away that belong to its way.
+
+
+class ExcursionSegmenter:
+  """Begins a gesture away from rest and ends it back at rest.
+
+  Attributes:
+    active: Whether a gesture is under way.
+  """
+
+  def __init__(
+    self, config: config_lib.Excursion, home_px: np.ndarray, width_px: float
+  ) -> None:
+    """Begins with a target at rest.
+
+    Args:
+      config: When a gesture begins and ends.
+      home_px: (2,) where it rests.
+      width_px: How wide it is.
+    """
+    self._config = config
+    self._home_px = home_px
+    self._width_px = width_px
+    self._radius_px = max(config.radius_px, config.radius_widths * width_px)
+    self._begin()
+
+  def _begin(self) -> None:
+    """Waits for the next gesture."""
+    self._lead: deque[klt.Track] = deque(maxlen=_LEAD)
+    self._path: list[klt.Track] = []
+    self._away_since_s = self._slow_since_s = self._back_since_s = math.nan
+    self._lost_since_s, self._lost_frames = math.nan, 0
+    self.active = False
+
+  def step(self, track: klt.Track) -> segmenter.Segment | None:
+    """Takes one frame's track.
+
+    Returns:
+      The segment that ended with this frame, if one did.
+    """
+    if not track.valid:
+      return self._lose(track)
+    self._lost_since_s, self._lost_frames = math.nan, 0
+    config, now_s = self._config, track.time_s
+    away = np.hypot(*(track.centre_px - self._home_px)) > self._radius_px
+    if not self.active:
+      return self._rest(track, away)
+    self._path.append(track)
+    slow = track.speed_px_s < config.off_px_s
+    back = slow and not away
+    self._slow_since_s = _since(self._slow_since_s, slow, now_s)
+    self._back_since_s = _since(self._back_since_s, back, now_s)
+    if config_lib.lasted(self._back_since_s, now_s, config.off_s):
+      return self._finish(self._back_since_s)
+    if config_lib.lasted(self._slow_since_s, now_s, config.stay_s):
+      return self._finish(self._slow_since_s)
+    return None
+
+  def _rest(self, track: klt.Track, away: bool) -> None:
+    self._lead.append(track)
+    self._away_since_s = _since(self._away_since_s, away, track.time_s)
+    if config_lib.lasted(self._away_since_s, track.time_s, self._config.on_s):
+      self._path, self.active = [*self._lead], True
+
+  def _lose(self, track: klt.Track) -> segmenter.Segment | None:
+    config, now_s = self._config, track.time_s
+    self._lost_since_s = _since(self._lost_since_s, True, now_s)
+    self._lost_frames += 1
+    self._slow_since_s = self._back_since_s = math.nan
+    if track.outside:
+      where = 'out of the picture'
+      lost = config_lib.lasted(self._lost_since_s, now_s, config.outside_s)
+    else:
+      where = 'not to be seen'
+      lost = self._lost_frames > config.coast_frames
+    if not lost:
+      return None
+    if self.active:
+      lost_s = now_s - self._lost_since_s
+      return self._finish(now_s, f'{where} for {lost_s:.2f} s')
+    self._begin()
+    return None
+
+  def _finish(self, end_s: float, loss: str | None = None) -> segmenter.Segment:
+    path = [each for each in self._path if each.time_s <= end_s]
+    path_px = _tidy(np.array([each.centre_px for each in path]))
+    path_px = np.concatenate([[self._home_px], path_px])
+    begin_s = path[0].time_s
+    if loss is None:
+      rest = [t.centre_px for t in self._path if t.time_s >= end_s]
+      self._home_px = np.mean(rest, axis=0)
+    self._begin()
+    return segmenter.Segment(begin_s, end_s, path_px, loss, self._width_px)
+
+
+def _tidy(path_px: np.ndarray) -> np.ndarray:  # (T, 2)
+  """Takes the noise out of a path, which would add to its length.
+
+  A mean over five frames, and then only points that are apart.
+  """
+  count = np.convolve(np.ones(len(path_px)), _MEAN, 'same')  # Less at ends.
+  smooth = [np.convolve(each, _MEAN, 'same') / count for each in path_px.T]
+  path_px = np.stack(smooth, axis=1)
+  step_px = _STEP * np.ptp(path_px, axis=0).max(initial=0.0)
+  kept = [path_px[0]]
+  for each in path_px[1:]:
+    if math.hypot(*(each - kept[-1])) > step_px:
+      kept.append(each)
+  kept.append(path_px[-1])
+  return np.array(kept)
+
+
+def _since(since_s: float, holds: bool, now_s: float) -> float:
+  """Since when something holds without a break."""
+  if not holds:
+    return math.nan
+  return now_s if math.isnan(since_s) else since_s

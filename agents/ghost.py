@@ -1,0 +1,90 @@
+"""Finds a target by the ghost that it leaves where it hovered.
+
+A background that was learned while the target hovered holds the target. Once
+it has moved away, two places differ from that background: where it is now, and
+where it was, which stays as it is. That ghost tells where the target was at
+rest, how large it is, and what is behind it.
+"""
+
+import dataclasses
+
+import numpy as np
+
+from waggle_tasks.agents import difference
+
+_LAG = 4  # Frames over which a ghost must not change.
+_MAX_CHANGE = 0.2  # Share of a ghost that may change in them.
+# A target and its ghost differ from the background about equally.
+_MIN_BALANCE = 0.25
+_MIN_SHARE = 0.1  # Of the largest difference; less is a fragment.
+_MARGIN_PX = 3
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class Ghost:
+  """Where a target hovered.
+
+  Attributes:
+    anchor_px: (2,) its centre.
+    width_px: Its width.
+    total: The sum of its weights.
+    box: Left, top, right and bottom of what it covered.
+  """
+
+  anchor_px: np.ndarray
+  width_px: float
+  total: float
+  box: tuple[int, int, int, int]
+
+
+class Separation:
+  """Watches a target leave its ghost.
+
+  Attributes:
+    greys: Times and images, (H, W) uint8, so far.
+  """
+
+  def __init__(
+    self, detector: difference.Detector, background: np.ndarray, sigmas: float
+  ) -> None:
+    """Begins with the first motion.
+
+    Args:
+      detector: Weighs differences.
+      background: (H, W) uint8 with the target in it.
+      sigmas: How far above noise a difference must be.
+    """
+    self._detector = detector
+    self._background = background
+    self._sigmas = sigmas
+    self.greys: list[tuple[float, np.ndarray]] = []
+
+  def step(self, grey: np.ndarray, time_s: float) -> Ghost | None:
+    """Takes an image and returns the ghost once the target has left it."""
+    self.greys.append((time_s, grey))
+    if len(self.greys) <= _LAG:
+      return None
+    _, before = self.greys[-1 - _LAG]
+    weigh, sigmas = self._detector.weights, self._sigmas
+    blobs = difference.Blobs(weigh(grey, self._background, sigmas))
+    totals = blobs.totals
+    changes = blobs.sums(weigh(grey, before, sigmas, spread=2.0))
+    large = totals > _MIN_SHARE * totals.max()
+    still = large & (changes < _MAX_CHANGE * totals)
+    rest, motion = totals[still].sum(), totals[large & ~still].sum()
+    if min(rest, motion) <= _MIN_BALANCE * max(rest, motion):
+      return None
+    return self._ghost(blobs.only(np.flatnonzero(still)))
+
+  def _ghost(self, weights: np.ndarray) -> Ghost:
+    total, anchor_px = difference.centroid(weights, (0, 0))
+    rows, columns = (np.flatnonzero(weights.any(axis=axis)) for axis in (1, 0))
+    height, width = weights.shape
+    box = (
+      max(int(columns[0]) - _MARGIN_PX, 0),
+      max(int(rows[0]) - _MARGIN_PX, 0),
+      min(int(columns[-1]) + 1 + _MARGIN_PX, width),
+      min(int(rows[-1]) + 1 + _MARGIN_PX, height),
+    )
+    width_px = float(columns[-1] + 1 - columns[0]) - self._detector.blur_px
+    return Ghost(anchor_px, width_px, total, box)

@@ -1,0 +1,96 @@
+"""A tracker and the segmenter that goes with it: images in, motions out."""
+
+from typing import Protocol
+
+import numpy as np
+
+from waggle_tasks.agents import absolute, excursion, klt, segmenter
+from waggle_tasks.agents import config as config_lib
+
+
+class Watcher(Protocol):
+  """Follows the target and cuts its track into motions.
+
+  Attributes:
+    anchor_px: (2,) where the target was first, or None.
+    moving: Whether a motion is under way.
+  """
+
+  anchor_px: np.ndarray | None
+  moving: bool
+
+  def step(
+    self, image: np.ndarray, time_s: float
+  ) -> tuple[klt.Track, segmenter.Segment | None]:
+    """Takes an image; the target in it, and the motion that it ended."""
+    ...
+
+
+class FlowWatcher:
+  """The paper's: sums of displacements, cut by speed."""
+
+  def __init__(
+    self, tracking: config_lib.Tracking, motion: config_lib.Motion
+  ) -> None:
+    self._tracker = klt.KltTracker(tracking)
+    self._segmenter = segmenter.Segmenter(motion, tracking)
+
+  @property
+  def anchor_px(self) -> np.ndarray | None:
+    """See `Watcher`."""
+    return self._tracker.anchor_px
+
+  @property
+  def moving(self) -> bool:
+    """See `Watcher`."""
+    return self._segmenter.active
+
+  def step(
+    self, image: np.ndarray, time_s: float
+  ) -> tuple[klt.Track, segmenter.Segment | None]:
+    """See `Watcher`."""
+    track = self._tracker.step(image, time_s)
+    return track, self._segmenter.step(track)
+
+
+class AbsoluteWatcher:
+  """Absolute positions, cut where the target leaves its rest and returns."""
+
+  def __init__(
+    self, tracking: config_lib.Differencing, motion: config_lib.Excursion
+  ) -> None:
+    self._tracker = absolute.AbsoluteTracker(tracking)
+    self._motion = motion
+    self._segmenter: excursion.ExcursionSegmenter | None = None
+
+  @property
+  def anchor_px(self) -> np.ndarray | None:
+    """See `Watcher`."""
+    return self._tracker.anchor_px
+
+  @property
+  def moving(self) -> bool:
+    """See `Watcher`."""
+    return self._segmenter is not None and self._segmenter.active
+
+  def step(
+    self, image: np.ndarray, time_s: float
+  ) -> tuple[klt.Track, segmenter.Segment | None]:
+    """See `Watcher`."""
+    tracks, ghost = self._tracker.step(image, time_s), self._tracker.ghost
+    if ghost is None:
+      self._segmenter = None
+      return tracks[-1], None
+    if self._segmenter is None:
+      self._segmenter = excursion.ExcursionSegmenter(
+        self._motion, ghost.anchor_px, ghost.width_px
+      )
+    segments = [self._segmenter.step(track) for track in tracks]
+    return tracks[-1], next(filter(None, segments), None)
+
+
+def make(config: config_lib.Config) -> Watcher:
+  """The watcher of a configuration."""
+  if isinstance(config.tracking, config_lib.Differencing):
+    return AbsoluteWatcher(config.tracking, config.motion)
+  return FlowWatcher(config.tracking, config.motion)

@@ -1,0 +1,88 @@
+"""Measures images, the loop and whole broadcasts on this machine.
+
+Prints medians over repeats, ratios first: they depend least on the machine.
+Everything is measured on one core with one drawing thread, but for the
+throughput of two processes. `--check` measures nothing: it draws random
+scenes with the incremental camera and in full, and tells how the pictures
+differ. `--check_events` flies cases with either camera and tells whether their
+event logs are equal. Exit status 0, 1 when a check found a difference, 2 on
+bad input.
+"""
+
+from collections.abc import Sequence
+import pathlib
+import sys
+
+from absl import flags
+
+from waggle_tasks import errors
+from waggle_tasks.experiments import launch
+
+_REPEATS = flags.DEFINE_integer('repeats', 3, 'How often each part is run.')
+_ONLY = flags.DEFINE_list(
+  'only',
+  [],
+  'Only these parts: cameras, stages, realtime, observers, memory, workers.',
+)
+_SIMULATED_S = flags.DEFINE_float(
+  'simulated_s', None, 'Length of each broadcast, in s; unset, what is needed.'
+)
+_LONG = flags.DEFINE_boolean(
+  'long', False, 'Whether memory is watched over whole broadcasts.'
+)
+_JSON = flags.DEFINE_string('json', None, 'New file for all numbers.')
+_CHECK = flags.DEFINE_boolean(
+  'check', False, 'Compare pictures of random scenes instead.'
+)
+_SCENES = flags.DEFINE_integer('scenes', 24, 'How many scenes to check.')
+_SEED = flags.DEFINE_integer('seed', 0, 'Of the scenes to check.')
+_CHECK_EVENTS = flags.DEFINE_boolean(
+  'check_events', False, 'Compare event logs instead.'
+)
+_SUITE = flags.DEFINE_string(
+  'suite', None, 'Whose event logs; unset, those of the default broadcast.'
+)
+
+
+class OutputError(errors.WaggleError):
+  """A file that cannot be written."""
+
+
+def main(argv: Sequence[str]) -> int:
+  """Measures or checks what the flags ask for."""
+  del argv  # All is in the flags.
+  # Imported here, as processes that measure import this module when it is run
+  # by itself, and must not load a GL stack before they are confined.
+  from waggle_tasks.experiments import records
+  from waggle_tasks.experiments.bench_parts import actions, sections
+
+  if _JSON.value is not None:
+    _check_new(pathlib.Path(_JSON.value))
+  here, done = actions.machine(), []
+  if _CHECK.value:
+    done.append(actions.check_pictures(_SCENES.value, _SEED.value))
+  if _CHECK_EVENTS.value:
+    done.append(actions.check_events(_SUITE.value))
+  if not done:
+    settings = sections.Settings(
+      here['renderer'], _REPEATS.value, _SIMULATED_S.value, _LONG.value
+    )
+    done.append(actions.measure(here, _ONLY.value, settings))
+  print('\n\n'.join(each.text for each in done))
+  if _JSON.value is not None:
+    found = {name: value for each in done for name, value in each.found.items()}
+    text = records.pretty({**here, **found})
+    pathlib.Path(_JSON.value).write_text(text, encoding='utf-8')
+  return 0 if all(each.passed for each in done) else 1
+
+
+def _check_new(path: pathlib.Path) -> None:
+  """Refuses a file that exists or cannot be made, before work."""
+  if path.exists() or not path.absolute().parent.is_dir():
+    raise OutputError(
+      f'`json` must be a new file in a folder that exists: got {str(path)!r}'
+    )
+
+
+if __name__ == '__main__':
+  sys.exit(launch.run(__name__))

@@ -1,0 +1,1 @@
+"""What `waggle bench` measures, a module for each part."""

@@ -1,0 +1,124 @@
+"""What `waggle bench` can do: measure, and check."""
+
+from collections.abc import Mapping, Sequence
+import dataclasses
+import os
+
+import tqdm
+
+from waggle_tasks import registry, suites
+from waggle_tasks.experiments import gl, provenance
+from waggle_tasks.experiments.bench_parts import (
+  events,
+  findings,
+  processes,
+  report,
+  sameness,
+  sections,
+)
+from waggle_tasks.protocol import checks
+
+
+@dataclasses.dataclass(frozen=True)
+class Outcome:
+  """What came out.
+
+  Attributes:
+    text: For people.
+    found: For machines, by name.
+    passed: False when a check found a difference.
+  """
+
+  text: str
+  found: Mapping[str, object]
+  passed: bool = True
+
+
+def machine() -> dict[str, object]:
+  """What measurements depend on, before they begin."""
+  return {
+    'renderer': gl.render_once().renderer,
+    'cores': len(processes.cores()),
+    'load': os.getloadavg()[0],
+    'versions': provenance.versions(),
+  }
+
+
+def measure(
+  here: Mapping[str, object], only: Sequence[str], settings: sections.Settings
+) -> Outcome:
+  """Measures parts of the benchmark.
+
+  Args:
+    here: What `machine` returned.
+    only: Names of `sections.SECTIONS`; empty for all of them.
+    settings: How much is measured.
+
+  Raises:
+    BenchError: if a name is not known.
+  """
+  names, results = sections.chosen(only), {}
+  bar = tqdm.tqdm(names, bar_format='{desc}|{bar}| {n}/{total} [{elapsed}]')
+  for name in bar:
+    bar.set_description_str(f'{name} ')
+    results[name] = sections.SECTIONS[name](settings)
+  clock = settings.clock.__name__
+  title = (
+    f'{here["renderer"]}, {here["cores"]} cores, load {here["load"]:.1f} when'
+    f' it began.\nMedians of {settings.repeats}, images and loops by {clock}.'
+  )
+  return Outcome(
+    f'{title}\n\n{report.text(results)}',
+    {
+      'settings': settings,
+      'clock': clock,
+      'ratios': report.ratios(results),
+      'measured': results,
+    },
+  )
+
+
+def check_pictures(scenes: int, seed: int) -> Outcome:
+  """Compares the incremental camera's pictures with full renders.
+
+  Args:
+    scenes: How many random scenes, 1 to 10,000.
+    seed: Of what is random.
+
+  Raises:
+    BenchError: if a number breaks a rule.
+  """
+  checks.integer('scenes', scenes, 1, 10_000, sections.BenchError)
+  checks.integer('seed', seed, 0, 2**32 - 1, sections.BenchError)
+  found = list(
+    tqdm.tqdm(sameness.compare(scenes, seed), desc='check', unit=' pictures')
+  )
+  return Outcome(
+    findings.pictures(found),
+    {'pictures': found},
+    findings.worst_levels(found) <= sameness.MAX_LEVELS,
+  )
+
+
+def check_events(suite: str | None) -> Outcome:
+  """Compares event logs with either camera.
+
+  Args:
+    suite: One of `suites.SUITES`; None for the default broadcast alone.
+
+  Raises:
+    SuiteError: if the suite is not known.
+  """
+  default = suites.Case('broadcast', 'own', '', registry.find('broadcast'))
+  cases = (default,) if suite is None else suites.find(suite)
+  workers, verdicts = len(processes.cores()), []
+  total_s = sum(2 * case.scene.episode_s for case in cases)
+  form = '{desc}|{bar}| {n:.0f}/{total:.0f} s simulated [{elapsed}]'
+  with tqdm.tqdm(total=total_s, desc='events ', bar_format=form) as bar:
+    for news in events.compare(cases, workers):
+      if isinstance(news, events.Verdict):
+        verdicts.append(news)
+      else:
+        bar.update(news)
+  same = all(each.difference is None for each in verdicts)
+  return Outcome(findings.event_logs(verdicts), {'events': verdicts}, same)

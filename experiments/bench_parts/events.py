@@ -1,0 +1,98 @@
+"""Whether receivers see the same events with either camera."""
+
+from collections.abc import Callable, Iterator, Sequence
+import dataclasses
+
+import cv2
+from dm_control import composer
+import dm_env
+
+from waggle_tasks import suites
+from waggle_tasks.agents import observer_agent
+from waggle_tasks.entities import observer
+from waggle_tasks.experiments import pool, records, rollout
+from waggle_tasks.experiments.bench_parts import loops
+from waggle_tasks.protocol import timing
+
+
+@dataclasses.dataclass(frozen=True)
+class Verdict:
+  """One case with either camera.
+
+  Attributes:
+    case: Its name.
+    events: How many events it has with the incremental camera.
+    difference: The first line of the event log that differs, in both; None
+      when the logs are equal.
+  """
+
+  case: str
+  events: int
+  difference: tuple[str, str] | None
+
+
+def compare(
+  cases: Sequence[suites.Case], workers: int
+) -> Iterator[float | Verdict]:
+  """Runs cases with either camera.
+
+  The provenance of a message is part of its event: equal logs also mean that
+  every picture before it was equal, bit for bit.
+
+  Args:
+    cases: The cases.
+    workers: How many processes.
+
+  Yields:
+    Simulated seconds as they pass, and a verdict for each case when it is
+    over.
+  """
+  jobs = [
+    pool.Job(f'{case.name} {camera}', _fly, (case, camera))
+    for case in cases
+    for camera in observer.CAMERAS
+  ]
+  logs: dict[str, dict[str, list[str]]] = {case.name: {} for case in cases}
+  for news in pool.run(jobs, workers):
+    if isinstance(news, pool.Progress):
+      yield news.amount
+      continue
+    case, camera = news.job.arguments
+    found = logs[case.name]
+    found[camera] = news.value
+    if len(found) == len(observer.CAMERAS):
+      one, other = (found[camera] for camera in observer.CAMERAS)
+      yield Verdict(case.name, len(one), difference(one, other))
+
+
+def difference(
+  one: Sequence[str], other: Sequence[str]
+) -> tuple[str, str] | None:
+  """The first pair of lines that differ; a line that is missing is empty."""
+  for number in range(max(len(one), len(other))):
+    pair = (
+      ''.join(one[number : number + 1]),
+      ''.join(other[number : number + 1]),
+    )
+    if pair[0] != pair[1]:
+      return pair
+  return None
+
+
+def _fly(
+  report: Callable[[float], None], case: suites.Case, camera: str
+) -> list[str]:
+  """The event log of a case; called in a worker."""
+  cv2.setNumThreads(1)  # Workers share the cores.
+
+  def watch(
+    environment: composer.Environment,
+    timestep: dm_env.TimeStep,
+    team: observer_agent.Team,
+  ) -> None:
+    del environment, team
+    if not timestep.first():
+      report(timing.FRAME_S)
+
+  scene = dataclasses.replace(case.scene, camera=camera)
+  return list(records.event_lines(rollout.run(scene, loops.RECEIVER, [watch])))

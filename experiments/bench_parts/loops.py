@@ -1,0 +1,105 @@
+"""Whole broadcasts by the clock."""
+
+from collections.abc import Sequence
+import dataclasses
+import time
+
+from dm_control import composer
+import dm_env
+
+from waggle_tasks import scenario
+from waggle_tasks.agents import observer_agent
+from waggle_tasks.experiments import rollout
+from waggle_tasks.experiments.bench_parts import processes
+from waggle_tasks.protocol import timing
+
+RECEIVER = 'klt'
+
+
+@dataclasses.dataclass(frozen=True)
+class Loop:
+  """What one broadcast took.
+
+  Attributes:
+    observers: How many observers it had.
+    frames: Control steps; each gave every observer an image.
+    loop_s: Seconds in the loop of these steps, by the clock that was given.
+    whole_s: Seconds that passed in all, with building and closing.
+    cpu_s: Processor seconds of the same, of all threads.
+  """
+
+  observers: int
+  frames: int
+  loop_s: float
+  whole_s: float
+  cpu_s: float
+
+  @property
+  def simulated_s(self) -> float:
+    """How long the broadcast was."""
+    return self.frames * timing.FRAME_S
+
+  @property
+  def receiver_frame_s(self) -> float:
+    """Seconds in the loop for one image of one observer."""
+    return self.loop_s / (self.frames * self.observers)
+
+
+class _Watch:
+  """A watcher that notes when the first and the last step ended."""
+
+  def __init__(self, clock: processes.Clock) -> None:
+    self._clock = clock
+    self.first_s = self.last_s = 0.0
+    self.steps = 0
+
+  def __call__(
+    self,
+    environment: composer.Environment,
+    timestep: dm_env.TimeStep,
+    team: observer_agent.Team,
+  ) -> None:
+    del environment, team
+    self.last_s = self._clock()
+    if timestep.first():
+      self.first_s = self.last_s
+    else:
+      self.steps += 1
+
+
+def run(
+  scene: scenario.Scenario,
+  clock: processes.Clock = time.perf_counter,
+  watchers: Sequence[rollout.Watcher] = (),
+) -> Loop:
+  """Runs a broadcast with the paper's receiver.
+
+  Args:
+    scene: The scenario.
+    clock: What the loop is measured by.
+    watchers: What else looks on.
+  """
+  watch = _Watch(clock)
+  cpu_s, begin_s = time.process_time(), time.perf_counter()
+  rollout.run(scene, RECEIVER, [*watchers, watch])
+  return Loop(
+    scene.observers,
+    watch.steps,
+    watch.last_s - watch.first_s,
+    time.perf_counter() - begin_s,
+    time.process_time() - cpu_s,
+  )
+
+
+def repeat(
+  scenes: Sequence[scenario.Scenario], repeats: int, clock: processes.Clock
+) -> list[Loop]:
+  """Runs every scenario once, then all of them again, and so on.
+
+  A broadcast of two frames comes first, as first calls are slow.
+
+  Returns:
+    The loops in the order in which they ran.
+  """
+  run(dataclasses.replace(scenes[0], duration_s=2 * timing.FRAME_S))
+  return [run(scene, clock) for _ in range(repeats) for scene in scenes]

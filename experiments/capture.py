@@ -1,0 +1,227 @@
+"""Raw captures: exactly what a receiver got, lossless and small.
+
+A capture is one file for each observer. While a camera stands still almost
+nothing of its image changes, so every image is kept as the window in which it
+differs from the one before, compressed by zlib; the first is kept whole.
+
+  'waggle capture 1', a line feed
+  for each image: time in s, then left, top, width and height of the window in
+    pixels, then the length of its data: '<dHHHHI', and the data
+  the same with time NaN and the number of images for the length, and the
+    CRC-32 of everything before it: '<I'
+"""
+
+from collections.abc import Iterator
+import math
+import pathlib
+import struct
+import types
+from typing import BinaryIO
+import zlib
+
+from dm_control import composer
+import dm_env
+import numpy as np
+
+from waggle_tasks import errors
+from waggle_tasks.agents import observer_agent
+
+FOLDER = 'raw'
+SUFFIX = '.capture'
+SHAPE = (480, 640, 3)  # Paper, section 'Scene, sensors, ...'.
+_MAGIC = b'waggle capture 1\n'
+_RECORD = struct.Struct('<dHHHHI')
+_CRC = struct.Struct('<I')
+_WORDS = 8  # Bytes that are compared at a time.
+_LARGEST = 2 * math.prod(SHAPE)  # No image's data is longer.
+
+
+class CaptureError(errors.WaggleError):
+  """A capture that is damaged, cut short or something else."""
+
+
+class Writer:
+  """Writes one observer's images; a context manager."""
+
+  def __init__(self, path: pathlib.Path) -> None:
+    """Begins a file."""
+    self._file = path.open('wb')
+    self._crc = 0
+    self._images = 0
+    self._last: np.ndarray | None = None
+    self._put(_MAGIC)
+
+  def __enter__(self) -> 'Writer':
+    return self
+
+  def __exit__(
+    self,
+    kind: type[BaseException] | None,
+    error: BaseException | None,
+    trace: types.TracebackType | None,
+  ) -> None:
+    if error is None:
+      self._put(_RECORD.pack(math.nan, 0, 0, 0, 0, self._images))
+      self._put(_CRC.pack(self._crc))
+    self._file.close()
+
+  def write(self, image: np.ndarray, time_s: float) -> None:
+    """Adds an image.
+
+    Args:
+      image: `SHAPE` uint8 RGB.
+      time_s: Its time.
+    """
+    if self._last is None:
+      left, top, right, bottom = 0, 0, SHAPE[1], SHAPE[0]
+      self._last = np.empty(SHAPE, np.uint8)
+    else:
+      left, top, right, bottom = _changed(self._last, image)
+    window = image[top:bottom, left:right]
+    self._last[top:bottom, left:right] = window
+    data = zlib.compress(window.tobytes()) if window.size else b''
+    self._put(
+      _RECORD.pack(time_s, left, top, right - left, bottom - top, len(data))
+    )
+    self._put(data)
+    self._images += 1
+
+  def _put(self, data: bytes) -> None:
+    self._crc = zlib.crc32(data, self._crc)
+    self._file.write(data)
+
+
+def _changed(
+  before: np.ndarray, after: np.ndarray
+) -> tuple[int, int, int, int]:
+  """The window in which two images differ: left, top, right, bottom."""
+  rows_of_words = SHAPE[0], -1
+  differs = before.reshape(rows_of_words).view(np.uint64) != (
+    np.ascontiguousarray(after).reshape(rows_of_words).view(np.uint64)
+  )
+  rows = np.flatnonzero(differs.any(axis=1))
+  if not rows.size:
+    return 0, 0, 0, 0
+  words = np.flatnonzero(differs.any(axis=0))
+  left = int(words[0]) * _WORDS // SHAPE[2]
+  right = -(-(int(words[-1]) + 1) * _WORDS // SHAPE[2])
+  return left, int(rows[0]), right, int(rows[-1]) + 1
+
+
+def read(path: pathlib.Path) -> Iterator[tuple[np.ndarray, float]]:
+  """Reads a capture, one image at a time.
+
+  Yields:
+    Each image, `SHAPE` uint8 RGB, in a buffer that the next one overwrites,
+    and its time in s.
+
+  Raises:
+    CaptureError: as soon as the file turns out to be damaged.
+  """
+  try:
+    with path.open('rb') as file:
+      yield from _images(file, path)
+  except OSError as error:
+    raise CaptureError(f'{path} cannot be read: {error.strerror}') from None
+
+
+def _images(
+  file: BinaryIO, path: pathlib.Path
+) -> Iterator[tuple[np.ndarray, float]]:
+  if file.read(len(_MAGIC)) != _MAGIC:
+    raise CaptureError(f'{path} is not a capture: it begins otherwise')
+  image, count, crc = np.zeros(SHAPE, np.uint8), 0, zlib.crc32(_MAGIC)
+  while True:
+    record = file.read(_RECORD.size)
+    if len(record) < _RECORD.size:
+      raise CaptureError(f'{path} is cut short after {count} images')
+    time_s, left, top, width, height, length = _RECORD.unpack(record)
+    crc = zlib.crc32(record, crc)
+    if math.isnan(time_s):
+      if length != count or file.read() != _CRC.pack(crc):
+        raise CaptureError(f'{path} is damaged or cut short: its check sum is wrong')
+      return
+    fits = left + width <= SHAPE[1] and top + height <= SHAPE[0]
+    data = file.read(length) if fits and length < _LARGEST else b''
+    crc = zlib.crc32(data, crc)
+    window = _window(data, (height, width, SHAPE[2]))
+    if len(data) != length or window is None:
+      raise CaptureError(f'{path} is damaged or cut short at image {count + 1}')
+    image[top : top + height, left : left + width] = window
+    count += 1
+    yield image, time_s
+
+
+def _window(data: bytes, shape: tuple[int, int, int]) -> np.ndarray | None:
+  """The pixels of a window; None when the data is not that of one."""
+  size = math.prod(shape)
+  if not size:
+    return np.empty(shape, np.uint8) if not data else None
+  try:
+    unpacked = zlib.decompressobj().decompress(data, size)
+  except zlib.error:
+    return None
+  if len(unpacked) != size:
+    return None
+  return np.frombuffer(unpacked, np.uint8).reshape(shape)
+
+
+class Recorder:
+  """A watcher that captures every image that a receiver takes."""
+
+  def __init__(self, folder: pathlib.Path) -> None:
+    """Makes the recorder, a context manager.
+
+    Args:
+      folder: The run folder; captures go into its folder 'raw'.
+    """
+    self._folder = folder / FOLDER
+    self._writers: list[Writer] = []
+
+  def __enter__(self) -> 'Recorder':
+    return self
+
+  def __exit__(
+    self,
+    kind: type[BaseException] | None,
+    error: BaseException | None,
+    trace: types.TracebackType | None,
+  ) -> None:
+    for writer in self._writers:
+      writer.__exit__(kind, error, trace)
+
+  def __call__(
+    self,
+    environment: composer.Environment,
+    timestep: dm_env.TimeStep,
+    team: observer_agent.Team,
+  ) -> None:
+    """Captures the images of this frame."""
+    if timestep.first():
+      self._folder.mkdir()
+      for each in environment.task.observers:
+        name = each.mjcf_model.model + SUFFIX
+        self._writers.append(Writer(self._folder / name))
+    for writer, observation, agent in zip(
+      self._writers, timestep.observation, team.agents, strict=True
+    ):
+      time_s = float(observation['time_s'])
+      if agent.receiver.track.time_s == time_s:  # Navigating, it reads none.
+        writer.write(observation['camera'], time_s)
+
+
+def paths(folder: pathlib.Path) -> list[pathlib.Path]:
+  """The captures of a run folder, in the order of its observers.
+
+  Raises:
+    CaptureError: if there are none.
+  """
+  found = sorted(
+    (folder / FOLDER).glob(f'*{SUFFIX}'),
+    key=lambda path: int(path.stem.rpartition('_')[2]),
+  )
+  if not found:
+    raise CaptureError(
+      f'{folder} holds no captures: run `waggle broadcast --raw` to make some'
+    )
+  return found

@@ -1,0 +1,1 @@
+"""Pages that people read: static HTML that needs neither server nor network."""

@@ -1,0 +1,174 @@
+"""Each motion beside the templates it was compared with, and its scores."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from waggle_tasks.agents import config as config_lib
+from waggle_tasks.agents import receiver
+from waggle_tasks.experiments import palette
+from waggle_tasks.experiments import traces as traces_lib
+from waggle_tasks.experiments.pages import markup, plot
+from waggle_tasks.protocol import gestures
+from waggle_tasks.protocol.symbols import MOTIONS, Symbol
+
+_SIDE = 150.0
+_EDGE = (30.0, 8.0)  # Around the plot: left and below, right and above.
+
+
+def draw(
+  events: Sequence[receiver.Event],
+  trace: traces_lib.Trace | None,
+  codebook: gestures.Codebook,
+  limits: config_lib.Recognition,
+) -> markup.Markup:
+  """One figure for each motion.
+
+  Args:
+    events: The motions that one observer recognised, or did not.
+    trace: What it saw, when that was kept.
+    codebook: The agreed gestures.
+    limits: What scores are held against.
+  """
+  paths = {m.confirmed_s: m.path_px for m in trace.motions} if trace else {}
+  templates = {
+    symbol: gestures.normalise(codebook[symbol].image_path())
+    for symbol in MOTIONS
+  }
+  figures = [
+    _figure(number, event, paths.get(event.time_s), templates, limits)
+    for number, event in enumerate(events, 1)
+  ]
+  return markup.tag('div', *figures, class_='gestures')
+
+
+def _figure(
+  number: int,
+  event: receiver.Event,
+  path_px: np.ndarray | None,
+  templates: dict[Symbol, np.ndarray],
+  limits: config_lib.Recognition,
+) -> markup.Markup:
+  unknown = event.symbol is Symbol.UNKNOWN
+  colour = palette.SYMBOLS[event.symbol]
+  chip = markup.tag(
+    'span',
+    str(event.symbol),
+    class_='symbol',
+    style=f'background:{colour};color:{palette.ink(colour)}',
+  )
+  caption = markup.tag(
+    'figcaption', f'motion {number}, {event.time_s:.2f} s ', chip
+  )
+  reason = None
+  if unknown and event.recognition is not None:
+    reason = markup.tag('p', event.recognition.reason, class_='reason')
+  if event.rejection:
+    said = markup.tag('p', f'frame: {event.rejection}', class_='reason')
+    reason = markup.join([reason, said])
+  return markup.tag(
+    'figure', caption, _plot(event, path_px, templates),
+    _scores(event, limits), reason, class_='unknown' if unknown else None,
+  )  # fmt: skip
+
+
+def _plot(
+  event: receiver.Event,
+  path_px: np.ndarray | None,
+  templates: dict[Symbol, np.ndarray],
+) -> markup.Markup:
+  """The normalised track over the best and the second template."""
+  if path_px is None or len(path_px) < 2 or not np.ptp(path_px, axis=0).any():
+    return markup.tag('p', 'no track', class_='blank')
+  track = gestures.normalise(path_px)
+  ranked = sorted(
+    templates, key=lambda symbol: gestures.separation(track, templates[symbol])
+  )
+  best = event.recognition.best if event.recognition else Symbol.UNKNOWN
+  if best in templates:
+    ranked.remove(best)
+    ranked.insert(0, best)
+  curves = [
+    (templates[ranked[1]], 'second', f'second: {ranked[1]}'),
+    (templates[ranked[0]], 'best', f'best: {ranked[0]}'),
+    (track, 'track', 'track'),
+  ]
+  points = np.concatenate([curve for curve, _, _ in curves])
+  middle = (points.min(axis=0) + points.max(axis=0)) / 2
+  half = 0.54 * np.ptp(points, axis=0).max()
+  left, rest = _EDGE
+  x = plot.Scale(middle[0] - half, middle[0] + half, left, left + _SIDE)
+  y = plot.Scale(middle[1] - half, middle[1] + half, rest, rest + _SIDE)
+  out = [_axes(x, y)]
+  for number, (curve, look, name) in enumerate(curves):
+    out.append(plot.path(x(curve[:, 0]), y(curve[:, 1]), class_=f'line {look}'))
+    row = rest + _SIDE + 30 + 14 * (2 - number)
+    out.append(
+      markup.tag(
+        'line', x1=left, x2=left + 22, y1=row - 4, y2=row - 4,
+        class_=f'line {look}',
+      )
+    )  # fmt: skip
+    out.append(plot.text(left + 27, row, name, class_='tick'))
+  width, height = left + _SIDE + rest, rest + _SIDE + 64
+  return markup.tag(
+    'svg', *out, viewBox=f'0 0 {width:g} {height:g}', role='img',
+    aria_label=f'track of the motion over {ranked[0]} and {ranked[1]}',
+  )  # fmt: skip
+
+
+def _axes(x: plot.Scale, y: plot.Scale) -> markup.Markup:
+  """A frame with ticks in spans; image rows grow downwards."""
+  out = [
+    markup.tag(
+      'rect', x=x.begin, y=y.begin, width=_SIDE, height=_SIDE, class_='frame'
+    )
+  ]
+  for tick in x.ticks(40):
+    at = float(x(tick))
+    out.append(
+      markup.tag('line', x1=at, x2=at, y1=y.begin, y2=y.end, class_='grid')
+    )
+    out.append(plot.text(at, y.end + 12, f'{tick:g}', class_='tick middle'))
+  for tick in y.ticks(40):
+    at = float(y(tick))
+    out.append(
+      markup.tag('line', x1=x.begin, x2=x.end, y1=at, y2=at, class_='grid')
+    )
+    out.append(
+      plot.text(x.begin - 4, at + 4, f'{0.0 - tick:g}', class_='tick end')
+    )
+  out.append(plot.text(x.end, y.end + 26, 'spans', class_='tick end'))
+  return markup.join(out)
+
+
+def _scores(
+  event: receiver.Event, limits: config_lib.Recognition
+) -> markup.Markup | None:
+  """Every score with its limit and whether it keeps it."""
+  scores = event.recognition
+  if scores is None:
+    return None
+  measured = scores.best is not Symbol.UNKNOWN
+  rows = [
+    ('RMSE', scores.rmse, '<', limits.max_rmse, measured),
+    ('margin', scores.margin, '>', limits.min_margin, measured),
+    ('closure', scores.closure, '<', limits.max_closure, measured),
+    ('span, px', scores.span_px, '\u2265', limits.min_span_px, True),
+  ]
+  cells = []
+  for name, value, sign, limit, known in rows:
+    kept = {'<': value < limit, '>': value > limit}.get(sign, value >= limit)
+    mark = ('\u2713' if kept else '\u2717') if known else '\u2013'
+    digits = 1 if 'px' in name else 3
+    cells.append(
+      markup.tag(
+        'tr',
+        markup.tag('th', name, scope='row'),
+        markup.tag('td', f'{value:.{digits}f}' if known else '\u2013'),
+        markup.tag('td', f'{sign} {limit:g}', class_='faint'),
+        markup.tag('td', mark),
+        class_='broken' if known and not kept else None,
+      )
+    )
+  return markup.tag('table', markup.tag('tbody', *cells), class_='scores')

@@ -1,0 +1,274 @@
+"""The page of a run: what happened, in pictures, for those who must trust it.
+
+A static file beside the data that it shows; `write` makes it again from them.
+"""
+
+from collections.abc import Mapping, Sequence
+import math
+import pathlib
+
+from waggle_tasks.agents import config as config_lib
+from waggle_tasks.agents import receivers
+from waggle_tasks.experiments import archive, palette, story
+from waggle_tasks.experiments.pages import (
+  document,
+  flights,
+  gesture_plots,
+  markup,
+  signals,
+  timelines,
+)
+from waggle_tasks.protocol import payload
+
+_VIDEOS = {'.webm': 'video/webm', '.mp4': 'video/mp4'}
+_DATA = (
+  'config.json', 'events.jsonl', 'result.json', 'provenance.json',
+  archive.TRACES, archive.POSITIONS,
+)  # fmt: skip
+
+tag = markup.tag
+
+
+def write(folder: pathlib.Path) -> pathlib.Path:
+  """Makes a run folder's page from its data and returns its path.
+
+  Raises:
+    ArchiveError: if it is no run folder, or damaged.
+    TraceError: the same, of its traces.
+  """
+  return document.save(folder, draw(archive.load(folder), videos(folder)))
+
+
+def videos(folder: pathlib.Path) -> list[str]:
+  """The names of a run's videos, the shortest name, page one, first."""
+  names = [p.name for p in folder.iterdir() if p.suffix in _VIDEOS]
+  return sorted(names, key=lambda name: (len(name), name))
+
+
+def draw(run: archive.Run, films: Sequence[str]) -> markup.Markup:
+  """The page as text: equal data gives equal bytes."""
+  changes = run.config['receiver'].partition(':')[2]
+  config = receivers.configure(changes)
+  outcomes = run.result['outcomes']
+  body = [
+    _head(run),
+    _failures(outcomes),
+    _film(run, films),
+    _flights(run),
+    *(_observer(run, outcome, config) for outcome in outcomes),
+    _provenance(run),
+  ]
+  return document.page(_title(run), body, _facts(run))
+
+
+def _title(run: archive.Run) -> str:
+  verdict = 'passed' if run.result['passed'] else 'FAILED'
+  return f'{run.scenario["payload"]}, {verdict} \u2013 waggle broadcast'
+
+
+def _facts(run: archive.Run) -> dict[str, object]:
+  """What the script says about a moment."""
+  readings = {
+    name: [
+      [0.0, story.Reading().status],
+      *([t, reading.status] for t, reading in story.readings(events)),
+    ]
+    for name, events in run.events.items()
+  }
+  sent = [[s.begin_s, s.end_s, str(s.symbol)] for s in run.sent]
+  return {'end': run.end_s, 'sent': sent, 'readings': readings}
+
+
+def _head(run: archive.Run) -> markup.Markup:
+  scene, passed = run.scenario, run.result['passed']
+  outcomes = run.result['outcomes']
+  expecting = sum(o['expected'] is not None for o in outcomes)
+  if expecting:
+    words = f'{run.result["correct"]} of {expecting} decoded {scene["payload"]}'
+  else:
+    words = 'nothing was to be decoded'
+  chips = []
+  for each in outcomes:
+    words_ = [each['observer'], ' ', each['decoded'] or 'no message']
+    link = tag('a', *words_, href=f'#{each["observer"]}')
+    chips.append(document.chip(not each['failures'], link))
+  verdict = document.chip(passed, 'group passed' if passed else 'group FAILED')
+  return tag(
+    'header',
+    tag('h1', verdict, ' ', words),
+    tag('p', *chips, class_='chips'),
+    tag('p', describe(run), class_='faint'),
+  )
+
+
+def describe(run: archive.Run) -> str:
+  """The scenario in a line."""
+  scene = run.scenario
+  bits = payload.Payload.from_bits(scene['payload'])
+  units = payload.Units(**scene['units'])
+  turn_deg = bits.heading * math.degrees(units.heading_step_rad)
+  way = 'backward' if bits.direction else 'forward'
+  reach_m = bits.distance * units.distance_unit_m
+  layout = scene['layout']
+  where = f'{layout}, {scene["distance_m"]:g} m'
+  if layout == 'arc':
+    where += f', half-span {scene["half_span_deg"]:g}\u00b0'
+  elif not isinstance(layout, str):
+    where = ', '.join(layout)
+  control = '' if scene['control'] == 'none' else f'{scene["control"]}; '
+  return (
+    f'{control}payload {bits.bits}: {way}, heading {turn_deg:g}\u00b0,'
+    f' {reach_m:g} m; observers: {scene["observers"]}; {where}; jitter'
+    f' {scene["jitter_m"]:g} m, seed {scene["seed"]}; receiver'
+    f' {run.config["receiver"]}; {run.end_s:.2f} s simulated'
+  )
+
+
+def _failures(outcomes: Sequence[Mapping]) -> markup.Markup | None:
+  lines = [
+    tag('li', tag('b', each['observer']), f': {failure}')
+    for each in outcomes
+    for failure in each['failures']
+  ]
+  if not lines:
+    return None
+  return tag(
+    'section', tag('h2', 'What failed'), tag('ul', *lines), class_='failed'
+  )
+
+
+def _film(run: archive.Run, films: Sequence[str]) -> markup.Markup:
+  """The video with the timelines that are bound to it."""
+  video, choice = None, None
+  if films:
+    source = films[0]
+    video = tag(
+      'video', src=source, controls=True, preload='auto', muted=True,
+      playsinline=True,
+    )  # fmt: skip
+    choice = _bar(films)
+  hint = 'Click a plot to go to that time; arrow keys step.'
+  missing = tag(
+    'p',
+    'This run has no video; `waggle broadcast --video` makes one.',
+    class_='faint',
+  )
+  return tag(
+    'section',
+    tag('h2', 'Timeline'),
+    video or missing,
+    choice,
+    tag('p', tag('output', id='now'), class_='now'),
+    timelines.draw(run),
+    tag('p', hint, class_='faint screen'),
+    _patterns(),
+    id='film',
+  )
+
+
+def _bar(films: Sequence[str]) -> markup.Markup:
+  """What the script controls the video with; useless without it."""
+  rates = [
+    tag('option', f'{rate}\u00d7', value=rate, selected=rate == 1)
+    for rate in (1, 2, 4, 8)
+  ]
+  pages = [tag('button', name, type='button', data_film=name) for name in films]
+  return tag(
+    'div',
+    tag('button', 'Play', type='button', id='play'),
+    tag('label', 'Speed ', tag('select', *rates, id='rate')),
+    tag('button', 'Full screen', type='button', id='full'),
+    *(pages if len(pages) > 1 else ()),
+    class_='bar',
+    hidden=True,
+  )
+
+
+def _patterns() -> markup.Markup:
+  """Stripes, so that UNKNOWN is told without its colour."""
+  line = tag('path', d='M0 6L6 0', stroke=palette.BLACK, stroke_width='1.2')
+  pattern = tag(
+    'pattern', line, id='stripes', width=6, height=6,
+    patternUnits='userSpaceOnUse',
+  )  # fmt: skip
+  return tag('svg', tag('defs', pattern), width=0, height=0)
+
+
+def _flights(run: archive.Run) -> markup.Markup:
+  return tag(
+    'section',
+    tag('h2', 'Flights'),
+    tag(
+      'div',
+      flights.plan(run),
+      tag('div', flights.displacements(run), flights.distances(run)),
+      class_='pair',
+    ),
+  )
+
+
+def _observer(
+  run: archive.Run, outcome: Mapping, config: config_lib.Config
+) -> markup.Markup:
+  name = outcome['observer']
+  trace = run.traces.get(name)
+  events = timelines.motions(run.events[name])
+  plots = tag('p', 'No track was kept.', class_='faint')
+  if trace is not None and len(trace.times_s):
+    plots = signals.draw(trace, run.end_s, config)
+  return tag(
+    'section',
+    tag(
+      'h2', name, ' ', document.chip(not outcome['failures'], _word(outcome))
+    ),
+    _outcome(outcome),
+    plots,
+    tag('h3', f'Motions of {name}'),
+    gesture_plots.draw(events, trace, run.codebook, config.recognition)
+    if events
+    else tag('p', 'It saw no motion.', class_='faint'),
+    id=name,
+    class_='observer',
+  )
+
+
+def _word(outcome: Mapping) -> str:
+  if outcome['failures']:
+    return 'failed'
+  return 'passed' if outcome['expected'] else 'waited, as it should'
+
+
+def _outcome(outcome: Mapping) -> markup.Markup:
+  columns = (
+    ('sent', 'expected', 0, 1), ('decoded', 'decoded', 0, 1),
+    ('END, s', 'end_s', 2, 1), ('final null, s', 'final_null_s', 2, 1),
+    ('start, s', 'start_s', 2, 1), ('arrival, s', 'arrival_s', 2, 1),
+    ('error, mm', 'error_m', 2, 1e3), ('hold, s', 'hold_s', 2, 1),
+  )  # fmt: skip
+  cells = []
+  for _, field, digits, scale in columns:
+    value = outcome[field]
+    if isinstance(value, float):
+      value = f'{value * scale:.{digits}f}'
+    cells.append('\u2013' if value is None else value)
+  return markup.table(('', *(name for name, *_ in columns)), [['', *cells]])
+
+
+def _provenance(run: archive.Run) -> markup.Markup:
+  origin = run.provenance
+  rows = [
+    ['sources', f'SHA-256 {origin["source_digest"]}'],
+    ['renderer', origin['renderer']],
+    *([name, value] for name, value in origin['versions'].items()),
+  ]
+  files = [
+    tag('a', name, href=name) for name in _DATA if (run.folder / name).exists()
+  ]
+  return tag(
+    'section',
+    tag('h2', 'Where it comes from'),
+    tag('p', 'The command that runs it again:'),
+    tag('pre', origin['command']),
+    tag('p', 'Its data: ', markup.join(files, ', ')),
+    tag('div', markup.table(('', 'version'), rows), class_='versions'),
+  )

@@ -1,0 +1,210 @@
+"""What was sent and what each observer made of it, all on one time axis."""
+
+from collections.abc import Sequence
+
+from waggle_tasks.agents import observer_agent, receiver
+from waggle_tasks.experiments import archive, palette, story
+from waggle_tasks.experiments.pages import markup, plot
+from waggle_tasks.protocol.symbols import Symbol
+from waggle_tasks.tasks import safety
+
+_ROW = 19
+_BAR = 13
+_SMALL_PX = 6.2  # Width of a small letter.
+
+
+def draw(run: archive.Run) -> markup.Markup:
+  """The timelines of a run, as SVG."""
+  across = plot.time_scale(run.end_s)
+  top = 4.0
+  out = [_name('sent', top), *_sent(run.sent, across, top)]
+  top += _ROW + 8
+  for name, events in run.events.items():
+    out.append(
+      markup.tag(
+        'line', x1=0, x2=plot.WIDTH, y1=top - 4, y2=top - 4, class_='rule'
+      )
+    )
+    out.append(plot.text(0, top + 11, name, class_='name'))
+    rows = (
+      ('', _motions(run, name, across)),
+      ('nulls', _nulls(events, across)),
+      ('frame', _states(events, run.end_s, across)),
+      ('navigation', _deeds(events, run.end_s, across)),
+    )
+    for label, marks in rows:
+      out.append(_name(label, top))
+      out += [_at(mark, top) for mark in marks]
+      top += _ROW
+    top += 8
+  grid = plot.time_axis(across, 0, top)
+  return plot.timed(
+    top + 32, run.end_s, grid, *out, label='What was sent and received'
+  )
+
+
+def _name(label: str, top: float) -> markup.Markup:
+  return plot.text(plot.LEFT - 8, top + 11, label, class_='tick end')
+
+
+def _at(mark: markup.Markup, top: float) -> markup.Markup:
+  return markup.tag('g', mark, transform=f'translate(0 {top:g})')
+
+
+def block(
+  left: float,
+  right: float,
+  label: str,
+  colour: str,
+  hint: str,
+  striped: bool = False,
+) -> markup.Markup:
+  """A bar with its label in it, when that fits."""
+  width = max(right - left, 2.0)
+  body = markup.tag(
+    'rect', x=left, y=1, width=width, height=_BAR, fill=colour, rx=2
+  )
+  stripes = None
+  if striped:
+    stripes = markup.tag(
+      'rect', x=left, y=1, width=width, height=_BAR, fill='url(#stripes)'
+    )
+  words = None
+  if len(label) * _SMALL_PX + 2 <= width:
+    words = plot.text(
+      (left + right) / 2, 11.5, label, class_='in', fill=palette.ink(colour)
+    )
+  return markup.tag('g', markup.tag('title', hint), body, stripes, words)
+
+
+def _sent(
+  sent: Sequence[story.Sent], across: plot.Scale, top: float
+) -> list[markup.Markup]:
+  return [
+    _at(
+      block(
+        across(each.begin_s),
+        across(each.end_s),
+        str(each.symbol),
+        palette.SYMBOLS[each.symbol],
+        f'sent {each.symbol}, {each.begin_s:.2f} to {each.end_s:.2f} s',
+      ),
+      top,
+    )
+    for each in sent
+  ]
+
+
+def _motions(
+  run: archive.Run, name: str, across: plot.Scale
+) -> list[markup.Markup]:
+  """Each motion from its beginning to its rest, then when it was confirmed."""
+  trace = run.traces.get(name)
+  spans = {m.confirmed_s: m for m in trace.motions} if trace else {}
+  out = []
+  for event in motions(run.events[name]):
+    span = spans.get(event.time_s)
+    begin_s = span.begin_s if span else event.time_s
+    unknown = event.symbol is Symbol.UNKNOWN
+    hint = f'{event.symbol} confirmed at {event.time_s:.2f} s'
+    if event.recognition is not None:
+      scores = event.recognition
+      hint += f', RMSE {scores.rmse:.3f}. {scores.reason}'
+    out.append(
+      block(
+        across(begin_s), across(event.time_s),
+        '?' if unknown else str(event.symbol), palette.SYMBOLS[event.symbol],
+        hint, unknown,
+      )
+    )  # fmt: skip
+  return out
+
+
+def motions(events: Sequence[object]) -> list[receiver.Event]:
+  """The motions among an observer's events."""
+  return [
+    event
+    for event in events
+    if isinstance(event, receiver.Event) and event.symbol is not Symbol.NULL
+  ]
+
+
+def _nulls(events: Sequence[object], across: plot.Scale) -> list[markup.Markup]:
+  """A diamond where each null was confirmed."""
+  out = []
+  for event in events:
+    if isinstance(event, receiver.Event) and event.symbol is Symbol.NULL:
+      x = float(across(event.time_s))
+      out.append(
+        markup.tag(
+          'path',
+          markup.tag('title', f'NULL at {event.time_s:.2f} s'),
+          d=f'M{x:.1f} 2l5 5.5l-5 5.5l-5 -5.5z',
+          class_='null',
+        )
+      )
+  return out
+
+
+def _states(
+  events: Sequence[object], end_s: float, across: plot.Scale
+) -> list[markup.Markup]:
+  """What the frame parser waited for, from event to event."""
+  changes = [(0.0, story.Reading())]
+  for time_s, reading in story.readings(events):
+    if reading.deed:
+      end_s = min(end_s, time_s)  # Navigating, it parses no more.
+    elif reading.waits_for != changes[-1][1].waits_for:
+      changes.append((time_s, reading))
+  out = []
+  ends = [time_s for time_s, _ in changes[1:]] + [end_s]
+  for (begin_s, reading), stop_s in zip(changes, ends, strict=True):
+    label = reading.waits_for
+    colour = _WAITING.get(label, _BIT)
+    hint = f'waits for {label}, {begin_s:.2f} to {stop_s:.2f} s'
+    out.append(block(across(begin_s), across(stop_s), label, colour, hint))
+  return out
+
+
+_BIT = '#cfe8f7'
+_WAITING = {
+  'first null': '#e4e7eb',
+  'null': '#e4e7eb',
+  'START': '#b9d3e6',
+  'END': '#efd5e3',
+  'final null': '#d5ead9',
+}
+
+
+def _deeds(
+  events: Sequence[object], end_s: float, across: plot.Scale
+) -> list[markup.Markup]:
+  """The flight, the hold after it, or the refusal."""
+  out, started_s = [], None
+  for event in events:
+    time_s = event.time_s
+    if isinstance(event, safety.Refusal):
+      hint = f'refused at {time_s:.2f} s: {event.reason}'
+      stop_s = min(time_s + 1.0, end_s)
+      out.append(
+        block(
+          across(time_s), across(stop_s), 'refused', palette.VERMILLION, hint
+        )
+      )
+    elif not isinstance(event, observer_agent.Navigation):
+      continue
+    elif event.deed is observer_agent.Deed.START:
+      started_s = time_s
+    else:
+      hint = f'flew {started_s:.2f} to {time_s:.2f} s, then held'
+      fly = block(
+        across(started_s), across(time_s), 'fly', palette.YELLOW, hint
+      )
+      hold = block(across(time_s), across(end_s), 'hold', palette.GREEN, hint)
+      return [*out, fly, hold]
+  if started_s is not None:
+    hint = f'flew from {started_s:.2f} s and never arrived'
+    out.append(
+      block(across(started_s), across(end_s), 'fly', palette.YELLOW, hint)
+    )
+  return out

@@ -1,0 +1,31 @@
+"""Makes the page of a folder again from the data in it.
+
+FOLDER is a run folder, as `waggle broadcast` leaves one, or the result folder
+of `waggle suite`; its page is index.html, a static file that needs neither a
+server nor a network.
+"""
+
+from collections.abc import Sequence
+import pathlib
+import sys
+
+from absl import flags
+
+from waggle_tasks.experiments import launch
+from waggle_tasks.experiments.pages import run_page, suite_page
+
+ARGUMENTS = 'FOLDER'
+
+
+def main(argv: Sequence[str]) -> int:
+  """Writes the page and returns the exit status."""
+  if len(argv) != 2:
+    raise flags.Error(f'takes one {ARGUMENTS}: got {argv[1:]}')
+  folder = pathlib.Path(argv[1])
+  is_suite = (folder / suite_page.RESULTS).exists()
+  print((suite_page if is_suite else run_page).write(folder))
+  return 0
+
+
+if __name__ == '__main__':
+  sys.exit(launch.run(__name__))

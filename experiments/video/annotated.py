@@ -1,0 +1,77 @@
+"""A copy of a recording that shows what a receiver made of it."""
+
+import pathlib
+import types
+
+import numpy as np
+
+from waggle_tasks.experiments import reader
+from waggle_tasks.experiments.video import encoders, layout, moment, page
+from waggle_tasks.protocol.symbols import Symbol
+
+_FPS = 12.5
+_LEAST_PX, _MOST_PX = 480, 960  # Width of the picture.
+
+
+class Film:
+  """Writes the video while a reader works; a context manager."""
+
+  def __init__(self, path: pathlib.Path, work: reader.Reader) -> None:
+    """Checks the file's name; it is written with the first picture.
+
+    Args:
+      path: Its ending chooses the codec; it must not exist.
+      work: Whose track, state and symbols are drawn.
+
+    Raises:
+      VideoError: if the name chooses no codec, or is taken.
+    """
+    encoders.check_name(path.name)
+    if path.exists() or not path.parent.is_dir():
+      raise layout.VideoError(
+        f'`annotate` must be a new file in a folder that exists: got {path}'
+      )
+    self._path, self._name = path, work.name
+    self._watch = moment.Watch(work.name, work)
+    self._page: page.Single | None = None
+    self._encoder: encoders.Encoder | None = None
+    self._begin_s = 0.0
+    self._pictures = 0
+
+  def __enter__(self) -> 'Film':
+    return self
+
+  def __exit__(
+    self,
+    kind: type[BaseException] | None,
+    error: BaseException | None,
+    trace: types.TracebackType | None,
+  ) -> None:
+    if error is None:
+      self._encoder.close()
+    else:
+      self._encoder = None  # Lets go of the file.
+      self._path.unlink(missing_ok=True)
+
+  def take(self, image: np.ndarray, time_s: float) -> None:
+    """Shows what the reader made of an image, (H, W, 3) uint8 RGB."""
+    self._watch.note(())
+    if self._encoder is None:
+      self._begin(image, time_s)
+    shown = None
+    # A constant rate from pictures at any times: the latest one is repeated.
+    while self._begin_s + self._pictures / _FPS <= time_s + 1e-6:
+      if shown is None:
+        sight = self._watch.sight(image)
+        now = moment.Moment(time_s, Symbol.NULL, (sight,), {})
+        shown = self._page.draw(now)
+      self._encoder.write(shown)
+      self._pictures += 1
+
+  def _begin(self, image: np.ndarray, time_s: float) -> None:
+    height, width, _ = image.shape
+    zoom = min(_MOST_PX / width, max(_LEAST_PX / width, 1.0))
+    size = round(zoom * width), round(zoom * height)
+    self._page = page.Single(self._name, size=size)
+    self._encoder = encoders.make(self._path, self._page.size, _FPS)
+    self._begin_s = time_s

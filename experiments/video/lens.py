@@ -1,0 +1,88 @@
+"""Looks at a running episode and tells what a picture of it shows."""
+
+from collections.abc import Sequence
+
+from dm_control import composer
+import dm_env
+import numpy as np
+
+from waggle_tasks import scenario
+from waggle_tasks.agents import observer_agent
+from waggle_tasks.entities import renderer
+from waggle_tasks.experiments import story
+from waggle_tasks.experiments.video import layout, moment
+from waggle_tasks.protocol import timing
+
+
+class Lens:
+  """Follows an episode frame by frame; moments are taken of the latest one.
+
+  Attributes:
+    frame: Number of the latest frame, from 0; -1 before the first.
+  """
+
+  def __init__(
+    self, scene: scenario.Scenario, shared: Sequence[str] = (*layout.SHARED,)
+  ) -> None:
+    """Makes a lens for an episode that has not begun.
+
+    Args:
+      scene: What will be flown.
+      shared: Which of `layout.SHARED` moments have images of.
+    """
+    self._sent = story.sent_in(scene)
+    self._shared = {name: layout.SHARED[name] for name in shared}
+    self._shadows = scene.appearance.shadows
+    self._watches: dict[str, moment.Watch] = {}
+    self.frame = -1
+
+  def note(
+    self,
+    environment: composer.Environment,
+    timestep: dm_env.TimeStep,
+    team: observer_agent.Team,
+  ) -> None:
+    """Takes what happened in a frame."""
+    task = environment.task
+    self._environment, self._observations = environment, timestep.observation
+    if timestep.first():
+      names = [each.mjcf_model.model for each in task.observers]
+      self._watches = {
+        name: moment.Watch(name, agent)
+        for name, agent in zip(names, team.agents, strict=True)
+      }
+      self._renderer = renderer.Renderer(environment.physics)
+    for watch in self._watches.values():
+      watch.note(task.refusals)
+    self.frame += 1
+
+  def shared(self) -> dict[str, np.ndarray]:
+    """New images of the shared views by name, (H, W, 3) uint8 RGB each."""
+    return {name: self._look(each) for name, each in self._shared.items()}
+
+  def moment(
+    self, names: Sequence[str], shared: dict[str, np.ndarray]
+  ) -> moment.Moment:
+    """The moment of the latest frame.
+
+    Args:
+      names: The observers it shows.
+      shared: What `shared` returned in this frame.
+    """
+    time_s = self.frame * timing.FRAME_S
+    images = {
+      name: observation['camera']
+      for name, observation in zip(
+        self._watches, self._observations, strict=True
+      )
+    }
+    sights = tuple(self._watches[name].sight(images[name]) for name in names)
+    symbol = story.symbol_at(self._sent, time_s)
+    return moment.Moment(time_s, symbol, sights, shared)
+
+  def _look(self, camera: str) -> np.ndarray:
+    physics = self._environment.physics
+    if self._shadows:  # The fast renderer draws none.
+      width, height = layout.VIEW_PX
+      return physics.render(height, width, camera)
+    return self._renderer.image(physics.model.name2id(camera, 'camera')).copy()

@@ -1,0 +1,91 @@
+"""What a picture of the video shows: an instant of the episode, copied."""
+
+from collections.abc import Sequence
+import dataclasses
+
+import numpy as np
+
+from waggle_tasks.agents import klt, observer_agent
+from waggle_tasks.experiments import rollout as rollout_lib
+from waggle_tasks.experiments import story
+from waggle_tasks.protocol.symbols import Symbol
+from waggle_tasks.tasks import safety
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class Sight:
+  """One observer: what it sees, and what it makes of that.
+
+  Attributes:
+    name: The observer's name.
+    image: (H, W, 3) uint8 RGB, exactly what its receiver got.
+    track: What its receiver last found, or None.
+    trail_px: (K, 2) the track since the last null.
+    anchor_px: (2,) where the target was first, or None.
+    reading: How far it is.
+    events: All its events so far.
+  """
+
+  name: str
+  image: np.ndarray
+  track: klt.Track | None
+  trail_px: np.ndarray
+  anchor_px: np.ndarray | None
+  reading: story.Reading
+  events: tuple[rollout_lib.Event, ...]
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class Moment:
+  """Everyone at one time.
+
+  Attributes:
+    time_s: Simulation time.
+    sent: What the performer flies.
+    sights: Every observer on the page.
+    shared: Images of the shared views by name, (H, W, 3) uint8 RGB each.
+  """
+
+  time_s: float
+  sent: Symbol
+  sights: tuple[Sight, ...]
+  shared: dict[str, np.ndarray]
+
+
+class Watch:
+  """Follows one agent, frame by frame, to tell its sight at any moment."""
+
+  def __init__(self, name: str, agent: observer_agent.ObserverAgent) -> None:
+    """Follows an agent from the beginning of its episode."""
+    self._name, self._agent = name, agent
+    self._events: list[rollout_lib.Event] = []
+    self._reading = story.Reading()
+    self._trail_px: list[np.ndarray] = []
+    self._anchor_px: np.ndarray | None = None
+
+  def note(self, refusals: Sequence[safety.Refusal]) -> None:
+    """Takes what the agent did in this frame, and what it was refused."""
+    track = self._agent.receiver.track
+    if track is not None and track.valid:
+      self._trail_px.append(track.centre_px)
+      if self._anchor_px is None:
+        self._anchor_px = track.centre_px
+    own = [r for r in refusals if r.vehicle == self._name]
+    for event in [*self._agent.events, *own]:
+      if event not in self._events:
+        self._events.append(event)
+        self._reading = self._reading.after(event)
+        if getattr(event, 'symbol', None) is Symbol.NULL:
+          self._trail_px = self._trail_px[-1:]
+
+  def sight(self, image: np.ndarray) -> Sight:
+    """What it sees now; the image is copied."""
+    return Sight(
+      self._name,
+      image.copy(),
+      self._agent.receiver.track,
+      np.array(self._trail_px).reshape(-1, 2),
+      self._anchor_px,
+      self._reading,
+      tuple(self._events),
+    )

@@ -1,0 +1,133 @@
+"""Which rows change when a choice that the paper leaves open is moved."""
+
+import dataclasses
+import pathlib
+import re
+import subprocess
+import sys
+
+import pytest
+
+from waggle_tasks import suites
+from waggle_tasks.agents import receivers
+from waggle_tasks.experiments import sensitivity
+
+Row = dict[str, object]
+CASES = suites.find('paper')
+
+
+@pytest.mark.parametrize('name', sensitivity.VARIANTS)
+def test_every_case_can_be_flown_with_every_choice(name: str) -> None:
+  variant = sensitivity.VARIANTS[name]
+  for case in CASES:
+    moved = dataclasses.replace(case.scene, **variant.changes)
+    receivers.make(variant.receiver, moved.codebook)
+
+
+def test_every_variant_moves_something_else() -> None:
+  (case,) = [case for case in CASES if case.name == 'default']
+  seen = []
+  for variant in sensitivity.VARIANTS.values():
+    moved = dataclasses.replace(case.scene, **variant.changes)
+    seen.append((moved, variant.receiver))
+  assert seen[0] == (case.scene, 'klt')
+  assert all(first != seen[0] for first in seen[1:])
+  assert all(seen.count(each) == 1 for each in seen)
+
+
+@pytest.mark.parametrize(
+  'field', ['spacing_m', 'eye_offset_m', 'appearance', 'codebook']
+)
+def test_open_choices_are_moved_both_ways(field: str) -> None:
+  default = CASES[0].scene
+
+  def sizes(value: object) -> list[float]:
+    match field:
+      case 'codebook':
+        return [gesture.duration_s for gesture in value.gestures]
+      case 'appearance':
+        return [value.brightness]
+    return [value]
+
+  moved = [
+    sizes(variant.changes[field])
+    for variant in sensitivity.VARIANTS.values()
+    if field in variant.changes
+  ]
+  chosen = sizes(getattr(default, field))
+  assert any(each < chosen for each in moved)
+  assert any(each > chosen for each in moved)
+
+
+def row(case: suites.Case, correct: int, passed: bool) -> Row:
+  published = dataclasses.asdict(case.published)
+  return {
+    'case': case.name, 'observers': case.scene.observers, 'correct': correct,
+    'passed': passed, 'published': published,
+  }  # fmt: skip
+
+
+def test_the_report_names_the_rows_that_changed() -> None:
+  def run(name: str, variant: sensitivity.Variant) -> list[Row]:
+    del variant
+    rows = [
+      row(each, each.published.correct, each.published.passed)
+      for each in suites.find('standard')
+    ]
+    if name == 'dim':
+      rows[11] |= {'correct': 1, 'passed': False}  # span-15
+      rows[9] |= {'correct': 3, 'passed': True}  # distance-1-0
+    return rows
+
+  head, _, base, dim = sensitivity.report(run, ['base', 'dim']).splitlines()
+  assert re.split(r' {2,}', head.strip())[:3] == [
+    'choice moved', 'messages', 'groups',
+  ]  # fmt: skip
+  assert re.split(r' {2,}', base) == ['as chosen', '44/53', '13/17', 'none']
+  assert re.split(r' {2,}', dim) == [
+    'light 0.7', '45/53', '13/17',
+    'distance-1-0 3/3 not 0/3; span-15 1/3 not 3/3',
+  ]  # fmt: skip
+
+
+def sensitivity_of(
+  folder: pathlib.Path, *flags: str
+) -> subprocess.CompletedProcess[str]:
+  module = 'waggle_tasks.experiments.sensitivity'
+  return subprocess.run(
+    [
+      sys.executable, '-m', module, '--suite=controls', '--case=no-send',
+      *flags,
+    ],
+    capture_output=True,
+    text=True,
+    check=False,
+    cwd=folder,
+  )  # fmt: skip
+
+
+def test_a_variant_is_a_suite_of_its_own(tmp_path: pathlib.Path) -> None:
+  done = sensitivity_of(tmp_path, '--variant=check-loose', '--output=out')
+  assert done.returncode == 0, done.stderr
+  last = done.stdout.splitlines()[-1]
+  cells = ['forward_backward_px=2.0', '0/3', '1/1', 'none']
+  assert re.split(r' {2,}', last) == cells
+  text = (tmp_path / 'out' / 'check-loose' / 'results.jsonl').read_text('utf-8')
+  assert '"receiver": "klt:forward_backward_px=2.0"' in text
+
+
+@pytest.mark.parametrize(
+  ('flag', 'error'),
+  [
+    ('--variant=dimm', "`variant` must be .*: got 'dimm'. Did you mean dim"),
+    ('--case=no-snd', "`case` must be .*: got 'no-snd'. Did you mean no-send"),
+    ('--workers=0', '`workers` must be between 1 and 1024: got 0'),
+  ],
+)
+def test_bad_input_is_one_line(
+  tmp_path: pathlib.Path, flag: str, error: str
+) -> None:
+  done = sensitivity_of(tmp_path, '--variant=base', flag)
+  assert done.returncode == 2
+  assert done.stderr.count('\n') == 1
+  assert re.match(f'waggle sensitivity: {error}', done.stderr)

@@ -1,0 +1,204 @@
+"""`waggle suite` as its user sees it: its tables, its files, its errors."""
+
+from collections.abc import Callable
+import json
+import pathlib
+import re
+import subprocess
+import sys
+
+import pytest
+
+Suite = Callable[..., subprocess.CompletedProcess[str]]
+
+
+@pytest.fixture
+def suite(tmp_path: pathlib.Path) -> Suite:
+  """Runs the launcher in a folder of its own: its flags are global."""
+  module = 'waggle_tasks.experiments.suite'
+
+  def run(*arguments: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+      [sys.executable, '-m', module, *arguments],
+      capture_output=True,
+      text=True,
+      check=False,
+      cwd=tmp_path,
+    )
+
+  return run
+
+
+def test_a_control_of_the_paper_is_flown_and_set_beside_it(
+  suite: Suite, tmp_path: pathlib.Path
+) -> None:
+  done = suite('--suite=controls', '--case=no-send', '--output=out/deep')
+  assert done.returncode == 0, done.stderr
+  head, rule, row, total = done.stdout.splitlines()[:4]
+  assert re.split(r' {2,}', head) == [
+    'controls: configuration', 'N', 'correct', 'paper', 'group', 'paper',
+  ]  # fmt: skip
+  assert set(rule) == {'-', ' '}
+  assert re.split(r' {2,}', row) == [
+    'Static, no send, 10 s', '3', '0/3', '0/3', 'Pass', 'Pass',
+  ]  # fmt: skip
+  assert total.startswith('broadcasts passed: 1/1 (100.00%), paper 1/1; 95 %')
+  assert re.search(
+    r'1 cases?, 10 s simulated, \d+ s of wall time .*out/deep', done.stdout
+  )
+  folder = tmp_path / 'out' / 'deep'
+  (line,) = (folder / 'results.jsonl').read_text('utf-8').splitlines()
+  row = json.loads(line)
+  assert (row['case'], row['group']) == ('no-send', 'controls')
+  assert row['published'] == {'correct': 0, 'passed': True}
+  assert (row['correct'], row['passed'], row['expecting']) == (0, True, 0)
+  assert row['scenario']['control'] == 'no_send'
+  table = (folder / 'results.csv').read_text('utf-8').splitlines()
+  assert table[0].startswith('group,case,receiver,observer,expected,decoded,')
+  assert len(table) == 1 + 3
+  origin = folder / 'cases' / 'no-send' / 'provenance.json'
+  command = json.loads(origin.read_text('utf-8'))['command']
+  assert (
+    command == 'waggle suite --suite=controls --receiver=klt --case=no-send'
+  )
+
+
+def test_a_suite_of_ones_own_is_a_json_file(
+  suite: Suite, tmp_path: pathlib.Path
+) -> None:
+  rows = [
+    {'name': 'still', 'task': 'no_send', 'duration_s': 0.04, 'group': 'quiet'},
+    {'name': 'cut', 'observers': 1, 'duration_s': 0.04, 'label': 'Cut short'},
+  ]
+  (tmp_path / 'mine.json').write_text(json.dumps(rows), encoding='utf-8')
+  done = suite('--suite=mine.json', '--receiver=klt:hold_s=2.5')
+  assert done.returncode == 1, done.stderr  # The second reads nothing.
+  assert 'quiet: configuration' in done.stdout
+  assert 'own: configuration' in done.stdout
+  assert re.search(
+    r'^Cut short +1 +0/1 +- +Fail +-$', done.stdout, re.MULTILINE
+  )
+  assert 'cut, observer_1: message: none, no null was ever' in done.stdout
+  folder = tmp_path / 'runs' / 'mine-klt:hold_s=2.5'
+  lines = (folder / 'results.jsonl').read_text('utf-8').splitlines()
+  assert [json.loads(line)['receiver'] for line in lines] == [
+    'klt:hold_s=2.5'
+  ] * 2
+
+
+def test_two_finished_folders_are_set_side_by_side(
+  suite: Suite, reference: object
+) -> None:
+  folder = str(reference.folder)
+  done = suite(f'--compare={folder}', folder)
+  assert done.returncode == 0, done.stderr
+  assert re.search(r'(?m) 1 +0/1 +0/1 +Fail +Fail$', done.stdout)
+  assert (
+    'own, broadcasts: 0 passed only first, 0 only second; McNemar exact p = 1'
+    in done.stdout
+  )
+
+
+# Bad input. Python and dm_control take a second to start, so that one process
+# takes every line; it forgets the flags in between.
+SCRIPT = """
+import contextlib, io, json, sys
+from absl import flags
+from waggle_tasks.experiments import launch
+
+answers = []
+for argv in json.load(sys.stdin):
+  for name in flags.FLAGS:
+    flags.FLAGS[name].unparse()
+  said = io.StringIO()
+  with contextlib.redirect_stderr(said), contextlib.redirect_stdout(said):
+    try:
+      status = launch.run('waggle_tasks.experiments.suite', ['suite', *argv])
+    except Exception as error:
+      status = repr(error)
+  answers.append((status, said.getvalue()))
+print(json.dumps(answers))
+"""
+OWN = {
+  'broken.json': '[{"name": "a"',
+  'table.json': '{"name": "a"}',
+  'empty.json': '[]',
+  'field.json': '[{"name": "a", "distanc_m": 1}]',
+  'value.json': '[{"name": "a"}, {"name": "b", "observers": 99}]',
+  'text.json': '"abc"',
+}
+FLAGS = {
+  '--suite=papr': r"`suite` must be one of \['standard', 'supplemental',"
+  r" 'controls', 'paper'\]: got 'papr'. Did you mean paper",
+  '--case=span-40,spn-45': "got 'spn-45'. Did you mean span-45",
+  '--suite=standard --case=no-send': "`case` must be .*: got 'no-send'",
+  '--suite=none.json': r'`suite` must be a readable JSON file: none\.json',
+  '--suite=broken.json': '`suite` must be a readable JSON file: broken',
+  '--suite=table.json': '`suite` must be a JSON list of cases: table',
+  '--suite=text.json': '`suite` must be a JSON list of cases: text',
+  '--suite=empty.json': 'one case the least',
+  '--suite=field.json': r'case 1 \(a\): `field` must .*Did you mean distance_m',
+  '--suite=value.json': r'case 2 \(b\): `observers` must be between 1 and',
+  '--workers=0': '`workers` must be between 1 and 1024: got 0',
+  '--workers=-1': '`workers` must be between 1 and 1024: got -1',
+  '--workers=two': 'flag --workers=two: .*an integer',
+  '--receiver=kl': "`receiver` must be .*: got 'kl'. Did you mean klt",
+  '--receiver=klt:hold=3': "got 'hold'. Did you mean hold_s",
+  'paper': "takes only flags, --name=value: got 'paper'",
+  '--compare=WHOLE': '--compare takes two folders: got 1',
+  '--compare=WHOLE WHOLE WHOLE': '--compare takes two folders: got 3',
+  '--compare=WHOLE none': 'must name folders of finished suites: none',
+  '--compare=WHOLE cut': 'must name folders of finished suites: cut',
+  '--compare=number WHOLE': 'must name folders of finished suites: number',
+  '--compare=WHOLE bare': 'must name folders of finished suites: bare',
+  '--compare=WHOLE more': 'silent',
+}
+
+
+@pytest.fixture(scope='module')
+def answers(
+  tmp_path_factory: pytest.TempPathFactory, reference: object
+) -> dict[str, tuple[int | str, str]]:
+  """Exit status, or what was raised, and output of each line of `FLAGS`."""
+  here = tmp_path_factory.mktemp('bad')
+  for name, text in OWN.items():
+    (here / name).write_text(text, encoding='utf-8')
+  first, *others = reference.lines()
+  # Of another scenario, although of the same name.
+  more = {**first, 'observers': 2, 'outcomes': first['outcomes'] * 2}
+  for name, rows in {
+    'cut': [first, *others], 'number': [3], 'bare': [{'case': 'silent'}],
+    'more': [more, *others],
+  }.items():  # fmt: skip
+    text = '\n'.join(map(json.dumps, rows))
+    (here / name).mkdir()
+    (here / name / 'results.jsonl').write_text(
+      text[:-9] if name == 'cut' else text, encoding='utf-8'
+    )
+  argvs = []
+  for line in FLAGS:
+    argv = line.replace('WHOLE', str(reference.folder)).split()
+    if not any(word.startswith(('--suite', '--case')) for word in argv):
+      # Should it run all the same, it is over soon.
+      argv = ['--suite=controls', '--case=no-send', *argv]
+    argvs.append(['--output=out', *argv])
+  done = subprocess.run(
+    [sys.executable, '-c', SCRIPT],
+    input=json.dumps(argvs),
+    capture_output=True,
+    text=True,
+    check=True,
+    cwd=here,
+  )
+  return dict(zip(FLAGS, json.loads(done.stdout), strict=True))
+
+
+@pytest.mark.parametrize('line', FLAGS)
+def test_bad_input_is_one_line(
+  answers: dict[str, tuple[int | str, str]], line: str
+) -> None:
+  status, said = answers[line]
+  assert status == 2, said
+  assert said.count('\n') == 1
+  assert said.startswith('waggle suite: ')
+  assert re.search(FLAGS[line], said)

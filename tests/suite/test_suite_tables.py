@@ -1,0 +1,179 @@
+"""The tables of a suite, beside the paper's, and of two suites."""
+
+import copy
+import re
+
+import pytest
+
+from waggle_tasks import suites
+from waggle_tasks.experiments import suite_tables
+
+Row = dict[str, object]
+
+
+def published_row(case: suites.Case) -> Row:
+  """The line of a case that gave just what the paper did."""
+  scene, published = case.scene, case.published
+  expecting = {'none': scene.observers, 'black_input': scene.observers - 1}
+  failed = 0 if published.passed else scene.observers - published.correct
+  outcomes = [
+    {
+      'observer': f'observer_{number + 1}',
+      'failures': ['message: none'] * (number < failed),
+    }
+    for number in range(scene.observers)
+  ]
+  return {
+    'case': case.name,
+    'group': case.group,
+    'label': case.label,
+    'observers': scene.observers,
+    'expecting': expecting.get(scene.control, 0),
+    'correct': published.correct,
+    'passed': published.passed,
+    'published': {'correct': published.correct, 'passed': published.passed},
+    'outcomes': outcomes,
+  }
+
+
+@pytest.fixture
+def paper() -> list[Row]:
+  """The results of the paper's suite when all is as published."""
+  return [published_row(case) for case in suites.find('paper')]
+
+
+def cells(report: str, label: str) -> list[str]:
+  """The cells of the line of a configuration."""
+  (line,) = [
+    each for each in report.splitlines() if each.startswith(f'{label}  ')
+  ]
+  return re.split(r' {2,}', line)
+
+
+def test_the_totals_are_the_papers_when_the_rows_are(paper: list[Row]) -> None:
+  lines = suite_tables.report(paper).splitlines()
+  totals = [line for line in lines if re.match('(messages|broadcasts) ', line)]
+  assert totals == [
+    'messages correct: 44/53 (83.02%), paper 44/53; 95 % interval 68.4% to'
+    ' 96.1% (bootstrap by broadcast)',
+    'broadcasts passed: 13/17 (76.47%), paper 13/17; 95 % interval 50.1% to'
+    ' 93.2% (Clopper-Pearson)',
+    'messages correct: 14/14 (100.00%), paper 14/14; 95 % interval 100.0% to'
+    ' 100.0% (bootstrap by broadcast)',
+    'broadcasts passed: 3/3 (100.00%), paper 3/3; 95 % interval 29.2% to'
+    ' 100.0% (Clopper-Pearson)',
+    'broadcasts passed: 3/3 (100.00%), paper 3/3; 95 % interval 29.2% to'
+    ' 100.0% (Clopper-Pearson)',
+  ]
+
+
+def test_groups_have_tables_of_their_own_in_order(paper: list[Row]) -> None:
+  report = suite_tables.report(paper)
+  heads = re.findall(r'^(\w+): configuration', report, re.MULTILINE)
+  assert heads == ['standard', 'supplemental', 'controls']
+  assert 'differs' not in report
+  assert report.endswith(suite_tables.CAVEAT)
+  assert report.count('deterministic matrix is descriptive') == 1
+
+
+@pytest.mark.parametrize(
+  ('label', 'expected'),
+  [
+    ('Half-span 45 deg', ['3', '1/3', '1/3', 'Fail', 'Fail']),
+    ('Half-span 40 deg, 100010', ['5', '3/5', '3/5', 'Fail', 'Fail']),
+    ('One observer, front view', ['1', '1/1', '1/1', 'Pass', 'Pass']),
+    ('Black input at observer 2', ['3', '2/3', '2/3', 'Pass', 'Pass']),
+    ('Static, no send, 10 s', ['3', '0/3', '0/3', 'Pass', 'Pass']),
+  ],
+)
+def test_a_row_has_ours_beside_the_papers(
+  paper: list[Row], label: str, expected: list[str]
+) -> None:
+  assert cells(suite_tables.report(paper), label) == [label, *expected]
+
+
+def test_a_row_unlike_the_papers_says_so_and_why(paper: list[Row]) -> None:
+  row = next(each for each in paper if each['case'] == 'span-15')
+  row |= {'correct': 2, 'passed': False}
+  row['outcomes'][2]['failures'] = ['message: none, START support lost', 'hold']
+  report = suite_tables.report(paper)
+  expected = ['3', '2/3', '3/3', 'Fail', 'Pass', 'differs']
+  assert cells(report, 'Half-span 15 deg')[1:] == expected
+  assert report.count('differs') == 1
+  assert 'messages correct: 43/53 (81.13%), paper 44/53' in report
+  assert 'broadcasts passed: 12/17 (70.59%), paper 13/17' in report
+  standard = report[: report.index('supplemental: ')]
+  assert '  span-15, observer_3: message: none, START support lost' in standard
+  assert '  span-15, observer_3: hold' in standard
+
+
+def test_a_right_message_in_a_failed_group_is_a_difference(
+  paper: list[Row],
+) -> None:
+  paper[0]['passed'] = False
+  report = suite_tables.report(paper)
+  expected = ['3', '3/3', '3/3', 'Fail', 'Pass', 'differs']
+  assert cells(report, 'Default, forward')[1:] == expected
+
+
+def test_nothing_published_leaves_dashes(paper: list[Row]) -> None:
+  for row in paper:
+    row['published'] = None
+  report = suite_tables.report(paper)
+  assert cells(report, 'Half-span 45 deg')[1:] == ['3', '1/3', '-', 'Fail', '-']
+  assert 'differs' not in report
+  assert ', paper' not in report
+
+
+@pytest.fixture
+def worse(paper: list[Row]) -> list[Row]:
+  """Six standard broadcasts more that fail, and one that passes instead."""
+  rows = copy.deepcopy(paper)
+  passing = [row for row in rows if row['passed']]
+  for row in passing[:6]:
+    row |= {'correct': row['correct'] - 1, 'passed': False}
+    row['outcomes'][0]['failures'] = ['message: none']
+  (near,) = [row for row in rows if row['case'] == 'distance-1-0']
+  near |= {'correct': 3, 'passed': True}
+  for outcome in near['outcomes']:
+    outcome['failures'] = []
+  return rows
+
+
+def test_two_suites_stand_side_by_side_paired_by_case(
+  paper: list[Row], worse: list[Row]
+) -> None:
+  report = suite_tables.compare(paper, worse[::-1], ('runs/a', 'runs/b'))
+  head = re.split(r' {2,}', report.splitlines()[0])
+  assert head == ['configuration', 'N', *(['runs/a', 'runs/b'] * 2)]
+  assert cells(report, 'Distance 1.0 m')[1:] == [
+    '3',
+    '0/3',
+    '3/3',
+    'Fail',
+    'Pass',
+  ]
+  assert cells(report, 'Default, forward')[1:] == [
+    '3',
+    '3/3',
+    '2/3',
+    'Pass',
+    'Fail',
+  ]
+  # 2 (1 + 7) / 2^7 = 0.125.
+  assert (
+    'standard, broadcasts: 6 passed only first, 1 only second; McNemar exact'
+    ' p = 0.125'
+  ) in report
+  assert 'standard, receivers: 6 passed only first, 3 only second' in report
+  assert (
+    'controls, broadcasts: 0 passed only first, 0 only second; McNemar exact'
+    ' p = 1'
+  ) in report
+
+
+def test_only_cases_that_both_hold_are_compared(paper: list[Row]) -> None:
+  report = suite_tables.compare(paper, paper[:1], ('a', 'b'))
+  assert 'Default, forward' in report
+  assert 'backward' not in report
+  assert 'supplemental' not in report

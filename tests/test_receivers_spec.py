@@ -1,0 +1,109 @@
+"""A receiver by name, and by name with some of its numbers changed."""
+
+from collections.abc import Callable
+import dataclasses
+import re
+
+import numpy as np
+import pytest
+
+from waggle_tasks import registry
+from waggle_tasks.agents import config, receivers
+from waggle_tasks.protocol import gestures, timing
+
+
+def numbers(value: config.Config) -> dict[str, float]:
+  """Every number of a configuration, by its name alone."""
+  return {
+    name: number
+    for group in dataclasses.asdict(value).values()
+    if group is not None
+    for name, number in group.items()
+  }
+
+
+def test_no_two_groups_have_a_number_of_the_same_name() -> None:
+  groups = dataclasses.asdict(config.Config()).values()
+  assert len(numbers(config.Config())) == sum(len(g or ()) for g in groups)
+
+
+def test_no_changes_leave_the_papers_receiver() -> None:
+  assert receivers.configure('') == config.Config()
+
+
+@pytest.mark.parametrize(
+  ('text', 'changes'),
+  [
+    ('corner_quality=0.1', {'corner_quality': 0.1}),
+    ('max_corners=25', {'max_corners': 25}),
+    ('max_rmse=0.2,hold_s=2.5', {'max_rmse': 0.2, 'hold_s': 2.5}),
+    ('forward_backward_px=5e-1', {'forward_backward_px': 0.5}),
+    ('off_s=1,on_px_s=4,levels=3', {'off_s': 1.0, 'on_px_s': 4.0, 'levels': 3}),
+  ],
+)
+def test_only_the_named_numbers_change(
+  text: str, changes: dict[str, float]
+) -> None:
+  found = numbers(receivers.configure(text))
+  assert found == numbers(config.Config()) | changes
+  for name, value in changes.items():
+    assert type(found[name]) is type(value)
+
+
+@pytest.mark.parametrize('name', numbers(config.Config()))
+def test_every_number_can_be_written_and_read_back(name: str) -> None:
+  value = numbers(config.Config())[name]
+  assert receivers.configure(f'{name}={value}') == config.Config()
+
+
+@pytest.mark.parametrize(
+  ('name', 'error'),
+  [
+    ('', "`receiver` must be one of .*: got ''"),
+    ('ktl', "`receiver` must be one of .*: got 'ktl'. Did you mean klt"),
+    ('KLT', "`receiver` must be one of .*: got 'KLT'"),
+    ('klt:corner_qualty=1', "got 'corner_qualty'. Did you mean corner_quality"),
+    ('klt:tracking=1', "must be one of .*'max_rmse'.*: got 'tracking'"),
+    ('klt:=1', "got ''"),
+    ('klt:max_rmse=0.2,', "got ''"),
+    ('klt: max_rmse=0.2', "got ' max_rmse'. Did you mean max_rmse"),
+    ('klt:max_rmse', "`max_rmse` must be of type float: got ''"),
+    ('klt:max_rmse=', "`max_rmse` must be of type float: got ''"),
+    ('klt:max_rmse=x', "`max_rmse` must be of type float: got 'x'"),
+    ('klt:max_rmse=0.1=0.2', "`max_rmse` must be .*: got '0.1=0.2'"),
+    ('klt:max_corners=2.5', "`max_corners` must be of type int: got '2.5'"),
+    ('klt:max_rmse=nan', '`max_rmse` must be a finite number: got nan'),
+    ('klt:max_rmse=inf', '`max_rmse` must be a finite number: got inf'),
+    ('klt:max_rmse=-0.1', '`max_rmse` must be between .*: got -0.1'),
+    ('klt:levels=-1', '`levels` must be between .*: got -1'),
+    # Numbers that the tracker itself cannot take.
+    ('klt:corner_quality=0', '`corner_quality` must be .*: got 0'),
+    ('klt:max_corners=0', '`max_corners` must be .*: got 0'),
+  ],
+)
+def test_a_receiver_that_does_not_exist_is_refused(
+  name: str, error: str
+) -> None:
+  with pytest.raises(receivers.ReceiverError) as caught:
+    receivers.make(name, gestures.v_codebook())
+  assert re.search(error, str(caught.value))
+
+
+@pytest.mark.parametrize(
+  ('name', 'null_s'),
+  [('klt', 3.0), ('klt:hold_s=1', 1.0), ('klt:min_support=1000', None)],
+)
+def test_a_changed_number_is_the_one_that_reads(
+  load: Callable[..., registry.composer.Environment],
+  name: str,
+  null_s: float | None,
+) -> None:
+  (seen,) = load(observers=1).reset().observation
+  reader = receivers.make(name, gestures.v_codebook())
+  times_s = np.arange(80) * timing.FRAME_S
+  events = [
+    event for time_s in times_s for event in reader.step(seen['camera'], time_s)
+  ]
+  assert [event.symbol for event in events] == ['NULL'] * (null_s is not None)
+  if events:
+    assert events[0].time_s == pytest.approx(null_s, abs=0.09)

@@ -1,0 +1,232 @@
+"""What a run leaves behind: all of it, or nothing."""
+
+import json
+import math
+import os
+import pathlib
+
+import numpy as np
+import pytest
+
+from waggle_tasks import scenario
+from waggle_tasks.agents import observer_agent, receiver, recogniser
+from waggle_tasks.arenas import layouts
+from waggle_tasks.experiments import records
+from waggle_tasks.experiments import rollout as rollout_lib
+from waggle_tasks.protocol import frame, payload
+from waggle_tasks.protocol.symbols import Symbol
+from waggle_tasks.tasks import safety
+
+
+def left_in(folder: pathlib.Path) -> list[str]:
+  """Everything below a folder, hidden things too."""
+  return sorted(str(p.relative_to(folder)) for p in folder.rglob('*'))
+
+
+def test_a_folder_appears_once_it_is_complete(tmp_path: pathlib.Path) -> None:
+  path = tmp_path / 'run'
+  with records.new_folder(path) as draft:
+    assert draft.is_dir()
+    (draft / 'a.txt').write_text('a')
+    assert not path.exists()
+    (draft / 'b.txt').write_text('b')
+  assert left_in(tmp_path) == ['run', 'run/a.txt', 'run/b.txt']
+
+
+def test_its_parents_are_made(tmp_path: pathlib.Path) -> None:
+  path = tmp_path / 'of' / 'mine' / 'run'
+  with records.new_folder(path):
+    pass
+  assert path.is_dir()
+
+
+@pytest.mark.parametrize('error', [KeyboardInterrupt, ValueError, SystemExit])
+@pytest.mark.parametrize('path', ['run', 'of/mine/run'])
+def test_an_interrupted_run_leaves_nothing(
+  error: type[BaseException], path: str, tmp_path: pathlib.Path
+) -> None:
+  def work() -> None:
+    with records.new_folder(tmp_path / path) as draft:
+      (draft / 'half.txt').write_text('ha')
+      raise error
+
+  with pytest.raises(error):
+    work()
+  assert left_in(tmp_path) == []
+
+
+@pytest.mark.parametrize('kind', ['folder', 'file', 'link', 'dangling link'])
+def test_what_exists_is_never_overwritten(
+  kind: str, tmp_path: pathlib.Path
+) -> None:
+  path = tmp_path / 'run'
+  match kind:
+    case 'folder':
+      path.mkdir()
+      (path / 'mine.txt').write_text('mine')
+    case 'file':
+      path.write_text('mine')
+    case 'link':
+      path.symlink_to(tmp_path)
+    case 'dangling link':
+      path.symlink_to(tmp_path / 'nowhere')
+  before = left_in(tmp_path)
+  with (
+    pytest.raises(records.OutputError) as caught,
+    records.new_folder(path),
+  ):
+    raise AssertionError('the work must not begin')
+  assert str(caught.value) == f'`output` must not exist yet: {path} does'
+  assert left_in(tmp_path) == before
+
+
+def test_what_appears_meanwhile_is_not_overwritten_either(
+  tmp_path: pathlib.Path,
+) -> None:
+  path = tmp_path / 'run'
+
+  def work() -> None:
+    with records.new_folder(path) as draft:
+      (draft / 'new.txt').write_text('new')
+      path.mkdir()
+      (path / 'mine.txt').write_text('mine')
+
+  with pytest.raises(records.OutputError, match='`output` must be writable'):
+    work()
+  assert left_in(tmp_path) == ['run', 'run/mine.txt']
+
+
+@pytest.mark.parametrize(
+  'path', ['/proc/run', '/dev/null/run', f'{__file__}/run', '/proc/a/b/run']
+)
+def test_a_place_that_cannot_be_written_is_named_before_the_work(
+  path: str,
+) -> None:
+  with (
+    pytest.raises(records.OutputError) as caught,
+    records.new_folder(pathlib.Path(path)),
+  ):
+    raise AssertionError('the work must not begin')
+  assert str(caught.value).startswith('`output` must be writable: ')
+  assert str(pathlib.Path(path).parent.parent) in str(caught.value)
+
+
+@pytest.mark.skipif(os.geteuid() == 0, reason='root may write everywhere')
+def test_a_folder_without_permission_is_named(tmp_path: pathlib.Path) -> None:
+  tmp_path.chmod(0o500)
+  error = f'`output` must be writable: {tmp_path} is not'
+  with (
+    pytest.raises(records.OutputError, match=error),
+    records.new_folder(tmp_path / 'run'),
+  ):
+    raise AssertionError('the work must not begin')
+
+
+def test_two_runs_beside_each_other_do_not_meet(
+  tmp_path: pathlib.Path,
+) -> None:
+  with records.new_folder(tmp_path / 'a') as first:
+    (first / 'a.txt').write_text('a')
+    with records.new_folder(tmp_path / 'b') as second:
+      (second / 'b.txt').write_text('b')
+  assert left_in(tmp_path) == ['a', 'a/a.txt', 'b', 'b/b.txt']
+
+
+def test_the_next_free_folder_is_counted(
+  tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+  monkeypatch.chdir(tmp_path)
+  assert records.free_folder('broadcast') == pathlib.Path('runs/broadcast-1')
+  (tmp_path / 'runs' / 'broadcast-1').mkdir(parents=True)
+  (tmp_path / 'runs' / 'broadcast-2').touch()
+  assert records.free_folder('broadcast') == pathlib.Path('runs/broadcast-3')
+  assert records.free_folder('suite') == pathlib.Path('runs/suite-1')
+
+
+FORWARD = payload.Payload.from_bits('000010')
+SCORES = recogniser.Recognition(
+  Symbol.UNKNOWN, 'RMSE 0.1758 >= 0.17', Symbol.ZERO, 0.1758, 0.2, 0.01, 90.0
+)
+
+
+def rollout() -> rollout_lib.Rollout:
+  """Two observers, one of which starts and is refused."""
+  state = frame.State.START
+  first = receiver.Event(3.0, Symbol.NULL, state)
+  unknown = receiver.Event(
+    12.0, Symbol.UNKNOWN, state, SCORES, rejection='expected a bit'
+  )
+  last = receiver.Event(95.6, Symbol.NULL, state, message=FORWARD)
+  start = observer_agent.Navigation(
+    95.6, observer_agent.Deed.START, (0.0, -0.9, 1.3), FORWARD, 2391, 'ab'
+  )
+  refusal = safety.Refusal(95.6, 'observer_1', 'too near')
+  return rollout_lib.Rollout(
+    times_s=np.arange(3) * 0.04,
+    positions_m={'performer': np.zeros((3, 3))},
+    contacts=(),
+    events={
+      'observer_1': (first, last, start, refusal),
+      'observer_2': (first, unknown),
+    },
+    renderer='none',
+  )
+
+
+def test_events_are_lines_of_json_in_order_of_time() -> None:
+  lines = [json.loads(line) for line in records.event_lines(rollout())]
+  assert [(line['time_s'], line['observer']) for line in lines] == [
+    (3.0, 'observer_1'),
+    (3.0, 'observer_2'),
+    (12.0, 'observer_2'),
+    (95.6, 'observer_1'),
+    (95.6, 'observer_1'),
+    (95.6, 'observer_1'),
+  ]
+  kinds = [line['kind'] for line in lines]
+  assert kinds == ['event'] * 4 + ['navigation', 'refusal']
+  null, _, unknown, last, start, refusal = lines
+  assert (null['symbol'], null['recognition']) == ('NULL', None)
+  assert unknown['symbol'] == 'UNKNOWN'
+  assert unknown['recognition']['reason'] == 'RMSE 0.1758 >= 0.17'
+  assert unknown['recognition']['best'] == '0'
+  assert unknown['recognition']['rmse'] == 0.1758
+  assert unknown['rejection'] == 'expected a bit'
+  assert last['message'] == start['payload'] == '000010'
+  assert start['deed'] == 'navigation start'
+  assert start['target_m'] == [0.0, -0.9, 1.3]
+  assert (start['images'], start['provenance']) == (2391, 'ab')
+  assert refusal['reason'] == 'too near'
+
+
+def test_event_lines_repeat_byte_for_byte() -> None:
+  assert [*records.event_lines(rollout())] == [*records.event_lines(rollout())]
+
+
+@pytest.mark.parametrize('value', [math.nan, math.inf, np.array([math.nan])])
+def test_what_json_cannot_hold_is_refused(value: object) -> None:
+  with pytest.raises(ValueError, match='JSON compliant'):
+    records.dumps({'value': value})
+  with pytest.raises(ValueError, match='JSON compliant'):
+    records.pretty({'value': value})
+
+
+def test_a_configuration_holds_every_choice() -> None:
+  scene = scenario.Scenario(seed=7, jitter_m=0.01)
+  held = json.loads(records.dumps(records.config(scene, 'klt')))
+  assert held['receiver'] == 'klt'
+  fields = held['scenario']
+  assert {*fields} == {*scenario.Scenario.__dataclass_fields__}
+  assert (fields['seed'], fields['jitter_m']) == (7, 0.01)
+  assert fields['payload'] == '000010'
+  assert fields['pauses']['gap_s'] == 2.0
+  assert fields['units']['distance_unit_m'] == 0.2
+  assert fields['appearance']['shadows'] is False
+  symbols = [each['symbol'] for each in fields['codebook']['gestures']]
+  assert sorted(symbols) == ['0', '1', 'END', 'START']
+
+
+def test_a_layout_of_ones_own_is_written_with_its_name() -> None:
+  scene = scenario.Scenario(layout=layouts.Line(1.5, 0.7))
+  held = records.config(scene, 'klt')['scenario']['layout']
+  assert held == {'Line': {'separation_m': 1.5, 'spacing_m': 0.7}}
