@@ -166,28 +166,21 @@ def read_events(
   return {name: tuple(each) for name, each in events.items()}
 
 
-def _event(
-  time_s: float,
-  symbol: str,
-  state: str,
-  recognition: dict | None,
-  message: str | None,
-  rejection: str | None,
-  **where: float | None,
-) -> receiver.Event:
-  if recognition is not None:
+def _event(**row: object) -> receiver.Event:
+  row['symbol'], row['state'] = Symbol(row['symbol']), frame.State(row['state'])
+  if row['message'] is not None:
+    row['message'] = payload.Payload.from_bits(row['message'])
+  if row['recognition'] is not None:
+    scores = dict(row['recognition'])
     for field in ('symbol', 'best'):
-      recognition[field] = Symbol(recognition[field])
-    recognition = recogniser.Recognition(**recognition)
-  bits = None if message is None else payload.Payload.from_bits(message)
-  state = frame.State(state)
-  return receiver.Event(
-    time_s, Symbol(symbol), state, recognition, bits, rejection, **where
-  )
+      scores[field] = Symbol(scores[field])
+    row['recognition'] = recogniser.Recognition(**scores)
+  return receiver.Event(**row)
 
 
 def _navigation(**row: object) -> observer_agent.Navigation:
   row['deed'] = observer_agent.Deed(row['deed'])
+  row['target_m'] = tuple(row['target_m'])
   row['payload'] = payload.Payload.from_bits(row['payload'])
   return observer_agent.Navigation(**row)
 
@@ -207,7 +200,7 @@ def save_positions(path: pathlib.Path, rollout: rollout_lib.Rollout) -> None:
 
 def _positions(path: pathlib.Path) -> dict[str, np.ndarray]:
   try:
-    with np.load(path, allow_pickle=False) as file:
-      return dict(file)
+    with path.open('rb') as file, np.load(file, allow_pickle=False) as arrays:
+      return dict(arrays)
   except (OSError, ValueError, EOFError, zipfile.BadZipFile) as error:
     raise ArchiveError(f'{path} must be a file of positions: {error}') from None

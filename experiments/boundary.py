@@ -2,10 +2,11 @@
 
 Two experiments on one scenario. In the first, a second world differs in all
 that a receiver could have peeked at: another payload, other positions of all
-vehicles, another dance, and so other images for everybody else; each receiver
-works in that world but is given the images that it had in the first. Its
-events must not change. In the second, two observers' images are swapped: their
-events must swap. Exit status 0 when both hold, 1 when not.
+vehicles, another dance, and so other images for everybody; each receiver works
+in that world beside teammates that see it, but is itself given the images that
+it had in the first. Its events must not change. In the second, two observers'
+images are swapped: their events must swap. Exit status 0 when both hold, 1
+when not.
 """
 
 from collections.abc import Callable, Sequence
@@ -54,25 +55,55 @@ class _World:
     """What the observers' cameras see now, one for each."""
     return [each['camera'] for each in self.timestep.observation]
 
-  def step(self, images: Images) -> None:
-    """Lets the team act on other images, in this world's positions."""
-    shown = [
+  def shown(self, images: Images) -> list[dict[str, np.ndarray]]:
+    """What this world's observers observe, but for the images."""
+    return [
       {**observation, 'camera': image}
       for observation, image in zip(
         self.timestep.observation, images, strict=True
       )
     ]
-    action = self.team.step(shown)
+
+  def step(self, images: Images) -> None:
+    """Lets the team act on images."""
+    action = self.team.step(self.shown(images))
     if not self.timestep.last():
       self.timestep = self.environment.step(action)
 
   @property
   def seen(self) -> Events:
     """What each receiver saw so far."""
-    return [
-      [e for e in agent.events if isinstance(e, receiver.Event)]
-      for agent in self.team.agents
-    ]
+    return _seen(self.team)
+
+
+class _Probe:
+  """A team in another world, one of which has its images of its own world."""
+
+  def __init__(
+    self, scene: scenario.Scenario, receiver_name: str, index: int
+  ) -> None:
+    self.team = observer_agent.Team(
+      scene.observers, receiver_name, scene.codebook, scene.units
+    )
+    self._index = index
+
+  def step(self, own: Images, foreign: _World) -> None:
+    """Shows the team the other world, and one of it its own image."""
+    images = foreign.images
+    images[self._index] = own[self._index]
+    self.team.step(foreign.shown(images))
+
+  @property
+  def seen(self) -> list[receiver.Event]:
+    """What the one receiver saw so far."""
+    return _seen(self.team)[self._index]
+
+
+def _seen(team: observer_agent.Team) -> Events:
+  return [
+    [e for e in agent.events if isinstance(e, receiver.Event)]
+    for agent in team.agents
+  ]
 
 
 def experiment(
@@ -97,6 +128,9 @@ def experiment(
   """
   own, foreign = (_World(each, receiver_name) for each in (scene, other))
   swapped = _World(scene, receiver_name)
+  probes = [
+    _Probe(scene, receiver_name, index) for index in range(scene.observers)
+  ]
   worlds = (own, foreign, swapped)
   order = list(range(scene.observers))
   order[swap[0]], order[swap[1]] = swap[1], swap[0]
@@ -104,7 +138,9 @@ def experiment(
     for _ in range(timing.frames(scene.episode_s)):
       images = own.images
       own.step(images)
-      foreign.step(images)
+      for probe in probes:
+        probe.step(images, foreign)
+      foreign.step(foreign.images)
       swapped.step([images[k] for k in order])
       tick()
       if own.timestep.last():
@@ -112,7 +148,7 @@ def experiment(
   finally:
     for world in worlds:
       world.environment.close()
-  return own.seen, foreign.seen, swapped.seen
+  return own.seen, [probe.seen for probe in probes], swapped.seen
 
 
 def main(argv: Sequence[str]) -> int:

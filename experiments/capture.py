@@ -139,7 +139,9 @@ def _images(
     crc = zlib.crc32(record, crc)
     if math.isnan(time_s):
       if length != count or file.read() != _CRC.pack(crc):
-        raise CaptureError(f'{path} is damaged or cut short: its check sum is wrong')
+        raise CaptureError(
+          f'{path} is damaged or cut short: its check sum is wrong'
+        )
       return
     fits = left + width <= SHAPE[1] and top + height <= SHAPE[0]
     data = file.read(length) if fits and length < _LARGEST else b''

@@ -91,7 +91,8 @@ def _folder(folder: pathlib.Path) -> int:
   status = 0
   for path in capture.paths(folder):
     readers = reader.replay(path, names, codebook)
-    print(f'{path.stem}: {readers[0].chain.images} images')
+    images, last_s = readers[0].chain.images, readers[0].last_s
+    print(f'{path.stem}: {images} images to {last_s:.2f} s')
     print(reader.report(readers))
     for each in readers:
       said = f'message {each.message}' if each.message else 'no message'

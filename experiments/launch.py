@@ -10,6 +10,7 @@ Exit status: what `main` returns (None is 0), 2 on bad input, 130 on Ctrl-C.
 
 from collections.abc import Sequence
 import importlib
+import os
 import pathlib
 import re
 import sys
@@ -20,6 +21,7 @@ from absl import flags
 
 from waggle_tasks import errors, runtime
 from waggle_tasks.experiments import gl
+from waggle_tasks.protocol import checks
 
 BAD_INPUT = 2
 INTERRUPTED = 130
@@ -76,6 +78,18 @@ def run(
     sys.unraisablehook = lambda unraisable: None
   print(f'{program}: {line}', file=sys.stderr)
   return status
+
+
+def worker_count(flag: flags.FlagHolder[int | None]) -> int:
+  """Returns what --workers asks for, one for each core when it is not given.
+
+  Raises:
+    WaggleError: if it asks for none, or for too many.
+  """
+  if flag.value is None:
+    return len(os.sched_getaffinity(0))
+  checks.integer(flag.name, flag.value, 1, 1024, errors.WaggleError)
+  return flag.value
 
 
 def given_flags() -> list[str]:

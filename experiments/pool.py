@@ -11,6 +11,7 @@ import dataclasses
 import multiprocessing
 from multiprocessing import connection
 import os
+import signal
 import time
 import traceback
 
@@ -153,6 +154,7 @@ def _end(worker: _Worker) -> None:
 
 def _serve(pipe: connection.Connection) -> None:
   """What a worker process does; it ends when its parent is gone."""
+  signal.signal(signal.SIGINT, signal.SIG_IGN)  # The parent ends workers.
   os.environ.setdefault('LP_NUM_THREADS', '1')  # Workers share the cores.
   while True:
     try:
@@ -165,5 +167,5 @@ def _serve(pipe: connection.Connection) -> None:
     except BrokenPipeError:
       return
     except Exception:
-      answer = ('failed', traceback.format_exc())
+      answer = ('failed', traceback.format_exc(limit=-1).strip())
     pipe.send(answer)

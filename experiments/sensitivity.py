@@ -9,7 +9,6 @@ moment, the same command goes on where it was.
 
 from collections.abc import Callable, Sequence
 import dataclasses
-import os
 import pathlib
 import sys
 
@@ -99,8 +98,7 @@ def main(argv: Sequence[str]) -> int:
   for wanted in _VARIANT.value:
     checks.choice('variant', wanted, [*VARIANTS], suites.SuiteError)
   cases = [c for c in cases if not _CASE.value or c.name in _CASE.value]
-  workers = _WORKERS.value or len(os.sched_getaffinity(0))
-  checks.integer('workers', workers, 1, 1024, suites.SuiteError)
+  workers = launch.worker_count(_WORKERS)
 
   def run(name: str, variant: Variant) -> list[dict[str, object]]:
     print(f'{name}: {variant.label}', flush=True)

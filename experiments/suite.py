@@ -10,7 +10,6 @@ sets two result folders side by side and runs nothing.
 
 from collections.abc import Sequence
 import json
-import os
 import pathlib
 import sys
 import time
@@ -45,7 +44,7 @@ _WORKERS = flags.DEFINE_integer(
   'workers', None, 'How many processes; unset, one for each core.'
 )
 _OUTPUT = flags.DEFINE_string(
-  'output', None, 'Result folder; unset, runs/SUITE-RECEIVER.'
+  'output', None, 'Result folder; unset, runs/SUITE-RECEIVER, and the cases.'
 )
 _COMPARE = flags.DEFINE_string(
   'compare', None, 'Result folder to set beside the folder B.'
@@ -64,10 +63,10 @@ def main(argv: Sequence[str]) -> int:
     raise flags.Error(f'takes only flags, --name=value: got {argv[1]!r}.')
   cases = _cases()
   receivers.make(_RECEIVER.value, gestures.v_codebook())
-  workers = _WORKERS.value or len(os.sched_getaffinity(0))
-  checks.integer('workers', workers, 1, 1024, suites.SuiteError)
+  workers = launch.worker_count(_WORKERS)
   stem = pathlib.Path(_SUITE.value).stem
-  folder = pathlib.Path(_OUTPUT.value or f'runs/{stem}-{_RECEIVER.value}')
+  name = '-'.join([stem, _RECEIVER.value, *_CASE.value])
+  folder = pathlib.Path(_OUTPUT.value or f'runs/{name}')
   command = provenance.command_line(
     'suite', [f'--suite={_SUITE.value}', f'--receiver={_RECEIVER.value}']
   )
@@ -107,28 +106,31 @@ def _own(path: str) -> tuple[suites.Case, ...]:
 
 
 def _as_expected(row: suite_tables.Row) -> bool:
-  published = row['published']
-  if published is None:
-    return row['passed']
+  """Whether a case passed, or failed as published."""
   ours = {'correct': row['correct'], 'passed': row['passed']}
-  return ours == published
+  return row['passed'] or row['published'] == ours
 
 
 def _compare(folders: Sequence[str]) -> int:
   if len(folders) != 2:
     raise flags.Error(f'--compare takes two folders: got {len(folders)}.')
-  tables = []
-  for folder in folders:
-    path = pathlib.Path(folder, 'results.jsonl')
-    try:
-      lines = path.read_text(encoding='utf-8').splitlines()
-      tables.append([json.loads(line) for line in lines])
-    except (OSError, ValueError) as error:
-      raise ResultError(
-        f'`compare` must name folders of finished suites: {path}: {error}'
-      ) from None
-  print(suite_tables.compare(*tables, tuple(folders)))
+  print(suite_tables.compare(*map(_rows, folders), tuple(folders)))
   return 0
+
+
+def _rows(folder: str) -> list[suite_tables.Row]:
+  """The rows of a finished suite."""
+  path = pathlib.Path(folder, 'results.jsonl')
+  try:
+    lines = path.read_text(encoding='utf-8').splitlines()
+    rows = [json.loads(line) for line in lines]
+    for row in rows:
+      suite_tables.check(row)
+  except (OSError, ValueError) as error:
+    raise ResultError(
+      f'`compare` must name folders of finished suites: {path}: {error}'
+    ) from None
+  return rows
 
 
 if __name__ == '__main__':

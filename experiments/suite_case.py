@@ -49,7 +49,7 @@ def fly(
   """Runs a case and leaves its sealed run folder; called in a worker.
 
   Args:
-    report: Told the simulated seconds since it was last called.
+    report: Told now and then how many frames are done.
     case: The case.
     receiver_name: The receiver.
     identity_: Its identity.
@@ -69,8 +69,7 @@ def fly(
     del team
     frame = timing.frames(environment.physics.time())
     if timestep.last() or frame % _REPORT_FRAMES == 0:
-      late = frame % _REPORT_FRAMES or _REPORT_FRAMES
-      report(late * timing.FRAME_S)
+      report(frame)
 
   rollout = rollout_lib.run(case.scene, receiver_name, [watch])
   verdict = evaluator.evaluate(case.scene, rollout)
@@ -97,7 +96,7 @@ def flaw(folder: pathlib.Path, identity_: str) -> str | None:
     return 'from another configuration, other sources or other versions'
   for name in sorted(files.keys() | found.keys()):
     if files.get(name) != found.get(name):
-      return f'{name} was changed'
+      return f'{name} is not what was written'
   return None
 
 

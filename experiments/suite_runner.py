@@ -13,6 +13,7 @@ import tqdm
 
 from waggle_tasks import errors, suites
 from waggle_tasks.experiments import pool, provenance, records, suite_case
+from waggle_tasks.protocol import timing
 
 _CASES, _DRAFTS, _LOCK = 'cases', '.drafts', '.lock'
 
@@ -88,8 +89,9 @@ def _locked(folder: pathlib.Path) -> Iterator[None]:
   """Makes the folder and keeps a second run of a suite out of it."""
   try:
     folder.mkdir(parents=True, exist_ok=True)
-    known = {_CASES, _DRAFTS, _LOCK, 'results.jsonl', 'results.csv'}
-    strange = {p.name for p in folder.iterdir()} - known - {'index.html'}
+    tables = ('results.jsonl', 'results.csv', 'index.html')
+    known = {_CASES, _DRAFTS, _LOCK, *tables, *map(_draft_name, tables)}
+    strange = {p.name for p in folder.iterdir()} - known
     if strange:
       raise records.OutputError(
         f'`output` must be new or hold results of a suite: {folder} holds'
@@ -120,7 +122,7 @@ def _missing(
     if not home.exists():
       missing.append(case)
     elif flaw := suite_case.flaw(home, identities[case.name]):
-      print(f'{case.name}: running it anew, its results are {flaw}')
+      print(f'{case.name}: run anew: {flaw}')
       shutil.rmtree(home)
       missing.append(case)
   return missing
@@ -132,27 +134,28 @@ def _size(case: suites.Case) -> float:
 
 
 def _fly(jobs: Sequence[pool.Job], folder: pathlib.Path, workers: int) -> None:
-  """Runs jobs behind a progress bar of simulated seconds."""
+  """Runs jobs behind a progress bar of simulated frames."""
   (folder / _CASES).mkdir(exist_ok=True)
-  lengths = {job.name: job.arguments[0].scene.episode_s for job in jobs}
-  flown = dict.fromkeys(lengths, 0.0)
+  lengths = {
+    job.name: timing.frames(job.arguments[0].scene.episode_s) for job in jobs
+  }
+  flown, active = dict.fromkeys(lengths, 0), {}
   form = '{desc}|{bar}| {n:.0f}/{total:.0f} s simulated [{elapsed} <'
   with tqdm.tqdm(
-    total=sum(lengths.values()), mininterval=0.5,
+    total=sum(lengths.values()), unit_scale=timing.FRAME_S, mininterval=0.5,
     bar_format=form + ' {remaining}]',
   ) as bar:  # fmt: skip
     for news in pool.run(jobs, workers):
       name = news.job.name
       if isinstance(news, pool.Progress):
-        flown[name] += news.amount
-        bar.update(news.amount)
-        active = [n for n, s in flown.items() if 0 < s < lengths[n]]
-        bar.set_description_str(f'{", ".join(active)} ', refresh=False)
+        flown[name] = min(int(news.amount), lengths[name])
+        active[name] = True
       else:
-        # Episodes may end before their time is up.
-        bar.update(lengths[name] - flown[name])
-        flown[name] = lengths[name]
         os.replace(folder / _DRAFTS / name, folder / _CASES / name)
+        flown[name] = lengths[name]  # Episodes may end before their time.
+        active.pop(name, None)
+      bar.set_description_str(f'{", ".join(active)} ', refresh=False)
+      bar.update(sum(flown.values()) - bar.n)
 
 
 def _csv(rows: Sequence[dict[str, object]]) -> str:
@@ -177,6 +180,10 @@ def _csv(rows: Sequence[dict[str, object]]) -> str:
 
 def _write(path: pathlib.Path, text: str) -> None:
   """Replaces a file as a whole."""
-  draft = path.with_name(f'.{path.name}.draft')
+  draft = path.with_name(_draft_name(path.name))
   draft.write_text(text, encoding='utf-8')
   os.replace(draft, path)
+
+
+def _draft_name(name: str) -> str:
+  return f'.{name}.draft'

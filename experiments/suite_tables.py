@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 import itertools
 
+from waggle_tasks import errors
 from waggle_tasks.experiments import statistics, table
 
 Row = Mapping[str, object]
@@ -12,6 +13,22 @@ CAVEAT = (
   ' broadcasts could show,\nnot how reliable the system is over a population'
   ' of scenes.'
 )
+
+
+class CompareError(errors.WaggleError):
+  """Results that cannot be set side by side."""
+
+
+def check(row: object) -> None:
+  """Refuses what is no line of results.jsonl.
+
+  Raises:
+    CompareError: naming what is missing.
+  """
+  fields = ('case', 'group', 'label', 'observers', 'correct', 'passed')
+  for field in (*fields, 'outcomes'):
+    if not isinstance(row, dict) or field not in row:
+      raise CompareError(f'a result has no `{field}`: {str(row)[:60]}')
 
 
 def report(rows: Sequence[Row]) -> str:
@@ -102,9 +119,20 @@ def compare(a: Sequence[Row], b: Sequence[Row], names: tuple[str, str]) -> str:
     a: The rows of the first.
     b: The rows of the second.
     names: What they are called.
+
+  Raises:
+    CompareError: if they have no case in common, or cases that differ.
   """
   others = {row['case']: row for row in b}
   pairs = [(row, others[row['case']]) for row in a if row['case'] in others]
+  if not pairs:
+    raise CompareError('`compare` must name folders with a case in common')
+  for one, two in pairs:
+    if one['observers'] != two['observers']:
+      raise CompareError(
+        f'`compare` must name folders of the same cases: {one["case"]} has'
+        f' {one["observers"]} and {two["observers"]} observers'
+      )
   cells = [
     (
       one['label'], str(one['observers']), _counts(one), _counts(two),

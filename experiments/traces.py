@@ -129,8 +129,8 @@ def load(path: pathlib.Path) -> dict[str, Trace]:
     TraceError: if the file is missing, damaged or something else.
   """
   try:
-    with np.load(path, allow_pickle=False) as file:
-      arrays = dict(file)
+    with path.open('rb') as file, np.load(file, allow_pickle=False) as opened:
+      arrays = dict(opened)
     names = dict.fromkeys(key.rpartition('.')[0] for key in arrays)
     return {name: _read(arrays, name) for name in names}
   except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile) as error:

@@ -137,10 +137,10 @@ def test_noise_has_its_size_and_follows_from_the_seed(
 ) -> None:
   noisy = []
   for seed in (0, 0, 1):
-    environment = dancing(seed=seed)
+    environment = dancing(seed=seed, duration_s=0.08)
     environment.task.observers[0].corruptor = lambda: eye.GaussianNoise(5.0)
     noisy.append(film(environment))
-  clean = film(dancing())
+  clean = film(dancing(duration_s=0.08))
   np.testing.assert_array_equal(noisy[0], noisy[1])
   assert (noisy[0][0] != noisy[2][0]).any()
   np.testing.assert_array_equal(noisy[0][1], clean[1])  # The other's eye.

@@ -58,7 +58,7 @@ def test_the_dance_turns_with_the_dancer(dancer: performer.Performer) -> None:
   np.testing.assert_allclose(position_m, (0, -0.285, 0), atol=1e-9)
 
 
-@hypothesis.settings(max_examples=200)
+@hypothesis.settings(max_examples=60)
 @hypothesis.given(st.floats(0.0, DANCE.end_s + 5.0))
 def test_stopped_at_any_time_it_brakes_smoothly_and_hovers(
   stop_s: float,

@@ -59,21 +59,33 @@ def test_leaving_begins_the_dwell_anew(mover: progress.Progress) -> None:
   assert rewards(mover, 0.0, 11)[-1] == 1.0
 
 
+# The episode goes on for 0.2 s after the 2 s of holding.
+HOLD_FRAMES = 55
+
+
 def test_it_is_done_after_a_hold_of_2_s(mover: progress.Progress) -> None:
   rewards(mover, 0.0, 11)
-  rewards(mover, 0.0, 49)
+  rewards(mover, 0.0, HOLD_FRAMES - 1)
   assert not mover.done
   rewards(mover, 0.0, 1)
   assert mover.done
 
 
 def test_a_hold_that_is_broken_begins_anew(mover: progress.Progress) -> None:
-  rewards(mover, 0.0, 11 + 49)
+  rewards(mover, 0.0, 11 + HOLD_FRAMES - 1)
   rewards(mover, 0.02, 1)
-  rewards(mover, 0.0, 49)
+  rewards(mover, 0.0, HOLD_FRAMES - 1)
   assert not mover.done
   rewards(mover, 0.0, 1)
   assert mover.done
+
+
+def test_a_message_that_leads_nowhere_is_never_done() -> None:
+  stays = progress.Progress(HOME_M, HOME_M)
+  for _ in range(100):
+    stays.update(HOME_M, REST, True)
+  assert stays.arrived
+  assert not stays.done
 
 
 def test_moving_early_costs_one_once(mover: progress.Progress) -> None:

@@ -252,6 +252,16 @@ def test_the_performer_is_kept_clear_of_too(load: Load) -> None:
   assert 'the way would pass performer at 0.' in refusal.reason
 
 
+def test_who_counts_on_one_that_is_refused_is_refused_too(load: Load) -> None:
+  """The first would hit the performer and stays, in the way of the others."""
+  layout = Places(((0, -0.5), (0, -0.8), (0, -1.1)))
+  environment = load('broadcast', cameras=False, layout=layout)
+  moved_m = fly(environment, [(0, 0.4, 0)] * 3, 90)
+  np.testing.assert_allclose(moved_m, np.zeros((3, 3)), atol=1e-4)
+  refused = [each.vehicle for each in environment.task.refusals]
+  assert refused == ['observer_1', 'observer_2', 'observer_3']
+
+
 def test_two_that_would_meet_are_both_refused(load: Load) -> None:
   layout = Places(((-0.3, -1.3), (0.3, -1.3)))
   environment = load('broadcast', cameras=False, observers=2, layout=layout)

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from waggle_tasks.agents import config as config_lib
-from waggle_tasks.agents import receiver
+from waggle_tasks.agents import receiver, views
 from waggle_tasks.experiments import palette
 from waggle_tasks.experiments import traces as traces_lib
 from waggle_tasks.experiments.pages import markup, plot
@@ -20,7 +20,7 @@ def draw(
   events: Sequence[receiver.Event],
   trace: traces_lib.Trace | None,
   codebook: gestures.Codebook,
-  limits: config_lib.Recognition,
+  config: config_lib.Config,
 ) -> markup.Markup:
   """One figure for each motion.
 
@@ -28,15 +28,12 @@ def draw(
     events: The motions that one observer recognised, or did not.
     trace: What it saw, when that was kept.
     codebook: The agreed gestures.
-    limits: What scores are held against.
+    config: What it was compared with, and what scores are held against.
   """
   paths = {m.confirmed_s: m.path_px for m in trace.motions} if trace else {}
-  templates = {
-    symbol: gestures.normalise(codebook[symbol].image_path())
-    for symbol in MOTIONS
-  }
+  templates = views.templates(codebook, config.views)
   figures = [
-    _figure(number, event, paths.get(event.time_s), templates, limits)
+    _figure(number, event, paths.get(event.time_s), templates, config)
     for number, event in enumerate(events, 1)
   ]
   return markup.tag('div', *figures, class_='gestures')
@@ -46,8 +43,8 @@ def _figure(
   number: int,
   event: receiver.Event,
   path_px: np.ndarray | None,
-  templates: dict[Symbol, np.ndarray],
-  limits: config_lib.Recognition,
+  templates: views.Templates,
+  config: config_lib.Config,
 ) -> markup.Markup:
   unknown = event.symbol is Symbol.UNKNOWN
   colour = palette.SYMBOLS[event.symbol]
@@ -68,29 +65,25 @@ def _figure(
     reason = markup.join([reason, said])
   return markup.tag(
     'figure', caption, _plot(event, path_px, templates),
-    _scores(event, limits), reason, class_='unknown' if unknown else None,
+    _scores(event, config), reason, class_='unknown' if unknown else None,
   )  # fmt: skip
 
 
 def _plot(
   event: receiver.Event,
   path_px: np.ndarray | None,
-  templates: dict[Symbol, np.ndarray],
+  templates: views.Templates,
 ) -> markup.Markup:
   """The normalised track over the best and the second template."""
   if path_px is None or len(path_px) < 2 or not np.ptp(path_px, axis=0).any():
     return markup.tag('p', 'no track', class_='blank')
   track = gestures.normalise(path_px)
-  ranked = sorted(
-    templates, key=lambda symbol: gestures.separation(track, templates[symbol])
-  )
-  best = event.recognition.best if event.recognition else Symbol.UNKNOWN
-  if best in templates:
-    ranked.remove(best)
-    ranked.insert(0, best)
+  errors = templates.errors(track)  # (4, V)
+  best, second = np.argsort(errors.min(axis=1), kind='stable')[:2]
+  nearest = templates.paths[np.arange(len(errors)), errors.argmin(axis=1)]
   curves = [
-    (templates[ranked[1]], 'second', f'second: {ranked[1]}'),
-    (templates[ranked[0]], 'best', f'best: {ranked[0]}'),
+    (nearest[best], 'best', f'best: {MOTIONS[best]}'),
+    (nearest[second], 'second', f'second: {MOTIONS[second]}'),
     (track, 'track', 'track'),
   ]
   points = np.concatenate([curve for curve, _, _ in curves])
@@ -102,7 +95,7 @@ def _plot(
   out = [_axes(x, y)]
   for number, (curve, look, name) in enumerate(curves):
     out.append(plot.path(x(curve[:, 0]), y(curve[:, 1]), class_=f'line {look}'))
-    row = rest + _SIDE + 30 + 14 * (2 - number)
+    row = rest + _SIDE + 30 + 14 * number
     out.append(
       markup.tag(
         'line', x1=left, x2=left + 22, y1=row - 4, y2=row - 4,
@@ -111,9 +104,10 @@ def _plot(
     )  # fmt: skip
     out.append(plot.text(left + 27, row, name, class_='tick'))
   width, height = left + _SIDE + rest, rest + _SIDE + 64
+  hint = f'track of the motion over {MOTIONS[best]} and {MOTIONS[second]}'
   return markup.tag(
     'svg', *out, viewBox=f'0 0 {width:g} {height:g}', role='img',
-    aria_label=f'track of the motion over {ranked[0]} and {ranked[1]}',
+    aria_label=hint,
   )  # fmt: skip
 
 
@@ -143,32 +137,35 @@ def _axes(x: plot.Scale, y: plot.Scale) -> markup.Markup:
 
 
 def _scores(
-  event: receiver.Event, limits: config_lib.Recognition
+  event: receiver.Event, config: config_lib.Config
 ) -> markup.Markup | None:
   """Every score with its limit and whether it keeps it."""
   scores = event.recognition
   if scores is None:
     return None
-  measured = scores.best is not Symbol.UNKNOWN
-  rows = [
-    ('RMSE', scores.rmse, '<', limits.max_rmse, measured),
-    ('margin', scores.margin, '>', limits.min_margin, measured),
-    ('closure', scores.closure, '<', limits.max_closure, measured),
-    ('span, px', scores.span_px, '\u2265', limits.min_span_px, True),
-  ]
-  cells = []
-  for name, value, sign, limit, known in rows:
-    kept = {'<': value < limit, '>': value > limit}.get(sign, value >= limit)
-    mark = ('\u2713' if kept else '\u2717') if known else '\u2013'
-    digits = 1 if 'px' in name else 3
-    cells.append(
-      markup.tag(
-        'tr',
-        markup.tag('th', name, scope='row'),
-        markup.tag('td', f'{value:.{digits}f}' if known else '\u2013'),
-        markup.tag('td', f'{sign} {limit:g}', class_='faint'),
-        markup.tag('td', mark),
-        class_='broken' if known and not kept else None,
-      )
+  limits, small = config.recognition, scores.reason.startswith('span ')
+  span = f'{limits.min_span_px:g}'
+  if config.views is not None:
+    span = f'{limits.min_span_widths:g} widths'
+  rows = [('span, px', f'{scores.span_px:.1f}', f'\u2265 {span}', not small)]
+  if scores.best is not Symbol.UNKNOWN:  # Only then it was compared.
+    rmse, margin, closure = scores.rmse, scores.margin, scores.closure
+    least, most, open_ = limits.min_margin, limits.max_rmse, limits.max_closure
+    rows = [
+      ('RMSE', f'{rmse:.3f}', f'< {most:g}', rmse < most),
+      ('margin', f'{margin:.3f}', f'> {least:g}', margin > least),
+      ('closure', f'{closure:.3f}', f'< {open_:g}', closure < open_),
+      *rows,
+    ]
+  cells = [
+    markup.tag(
+      'tr',
+      markup.tag('th', name, scope='row'),
+      markup.tag('td', value),
+      markup.tag('td', limit, class_='faint'),
+      markup.tag('td', '\u2713' if kept else '\u2717'),
+      class_=None if kept else 'broken',
     )
+    for name, value, limit, kept in rows
+  ]
   return markup.tag('table', markup.tag('tbody', *cells), class_='scores')

@@ -36,7 +36,13 @@ def write(folder: pathlib.Path) -> pathlib.Path:
     ArchiveError: if it is no run folder, or damaged.
     TraceError: the same, of its traces.
   """
-  return document.save(folder, draw(archive.load(folder), videos(folder)))
+  try:
+    whole = draw(archive.load(folder), videos(folder))
+  except (AttributeError, KeyError, TypeError) as error:
+    raise archive.ArchiveError(
+      f'{folder} holds data that no run left: {error!r}'
+    ) from None
+  return document.save(folder, whole)
 
 
 def videos(folder: pathlib.Path) -> list[str]:
@@ -47,8 +53,9 @@ def videos(folder: pathlib.Path) -> list[str]:
 
 def draw(run: archive.Run, films: Sequence[str]) -> markup.Markup:
   """The page as text: equal data gives equal bytes."""
-  changes = run.config['receiver'].partition(':')[2]
-  config = receivers.configure(changes)
+  kind, _, changes = run.config['receiver'].partition(':')
+  default = receivers.RECEIVERS[kind].DEFAULT
+  config = receivers.configure(changes, default)
   outcomes = run.result['outcomes']
   body = [
     _head(run),
@@ -224,7 +231,7 @@ def _observer(
     _outcome(outcome),
     plots,
     tag('h3', f'Motions of {name}'),
-    gesture_plots.draw(events, trace, run.codebook, config.recognition)
+    gesture_plots.draw(events, trace, run.codebook, config)
     if events
     else tag('p', 'It saw no motion.', class_='faint'),
     id=name,

@@ -20,7 +20,7 @@ def draw(
     end_s: Where the time axis ends.
     config: The limits that lines are drawn at.
   """
-  motion, rest, tracking = config.motion, config.stillness, config.tracking
+  rest, flow = config.stillness, isinstance(config.motion, config_lib.Motion)
   offset_px = np.where(
     trace.valid[:, None], trace.centre_px - anchor_px(trace), np.nan
   )  # (T, 2)
@@ -29,12 +29,12 @@ def draw(
     trace.valid, np.maximum(trace.speed_px_s, _SLOWEST_PX_S), np.nan
   )
   fastest = max(10 ** np.ceil(np.log10(np.nanmax(speed, initial=10.0))), 10.0)
-  most = max(1.15 * trace.support.max(initial=1), 1.5 * tracking.min_support)
+  most = 1.15 * trace.support.max(initial=10)
 
   def panel(
     title: str, unit: str, height: float, low: float, high: float,
-    lines: list[plot.Line], limits: plot.Limits, logarithmic: bool = False,
-    last: bool = False,
+    lines: list[plot.Line], limits: plot.Limits | None,
+    logarithmic: bool = False, last: bool = False,
   ) -> markup.Markup:  # fmt: skip
     scale = plot.Scale(low, high, _TOP + height, _TOP, logarithmic)
     return plot.panel(
@@ -57,30 +57,39 @@ def draw(
       panel(
         'speed', 'px/s, log', 110, _SLOWEST_PX_S, fastest,
         [plot.Line(speed, 'a')],
-        plot.Limits(
-          [motion.off_px_s, motion.on_px_s],
-          f'motion begins over {motion.on_px_s:g} px/s and ends under'
-          f' {motion.off_px_s:g} px/s',
-        ),
-        logarithmic=True,
+        _speeds(config.motion), logarithmic=True,
       ),
       panel(
-        'support', 'features', 60, 0.0, most,
+        'support', 'features' if flow else 'pixels', 60, 0.0, most,
         [plot.Line(trace.support, 'a')],
         plot.Limits(
-          [tracking.min_support], f'at least {tracking.min_support}'
-        ),
+          [config.tracking.min_support],
+          f'at least {config.tracking.min_support}',
+        ) if flow else None,
       ),
       panel(
-        'f-b ratio', '0 to 1', 60, 0.0, 1.05,
+        'f-b ratio' if flow else 'quality', '0 to 1', 60, 0.0, 1.05,
         [plot.Line(trace.quality, 'a')],
         plot.Limits(
-          [tracking.min_quality], f'at least {tracking.min_quality:g}'
+          [rest.null_quality], f'a null needs {rest.null_quality:g}'
         ),
         last=True,
       ),
     ]
   )  # fmt: skip
+
+
+def _speeds(motion: config_lib.Motion | config_lib.Excursion) -> plot.Limits:
+  """The speeds at which motions begin and end."""
+  if isinstance(motion, config_lib.Excursion):
+    return plot.Limits(
+      [motion.off_px_s], f'motion ends under {motion.off_px_s:g} px/s'
+    )
+  return plot.Limits(
+    [motion.off_px_s, motion.on_px_s],
+    f'motion begins over {motion.on_px_s:g} px/s and ends under'
+    f' {motion.off_px_s:g} px/s',
+  )
 
 
 def anchor_px(trace: traces_lib.Trace) -> np.ndarray:  # (2,)

@@ -21,7 +21,6 @@ class Sight:
     image: (H, W, 3) uint8 RGB, exactly what its receiver got.
     track: What its receiver last found, or None.
     trail_px: (K, 2) the track since the last null.
-    anchor_px: (2,) where the target was first, or None.
     reading: How far it is.
     events: All its events so far.
   """
@@ -30,7 +29,6 @@ class Sight:
   image: np.ndarray
   track: klt.Track | None
   trail_px: np.ndarray
-  anchor_px: np.ndarray | None
   reading: story.Reading
   events: tuple[rollout_lib.Event, ...]
 
@@ -61,15 +59,12 @@ class Watch:
     self._events: list[rollout_lib.Event] = []
     self._reading = story.Reading()
     self._trail_px: list[np.ndarray] = []
-    self._anchor_px: np.ndarray | None = None
 
   def note(self, refusals: Sequence[safety.Refusal]) -> None:
     """Takes what the agent did in this frame, and what it was refused."""
     track = self._agent.receiver.track
     if track is not None and track.valid:
       self._trail_px.append(track.centre_px)
-      if self._anchor_px is None:
-        self._anchor_px = track.centre_px
     own = [r for r in refusals if r.vehicle == self._name]
     for event in [*self._agent.events, *own]:
       if event not in self._events:
@@ -85,7 +80,6 @@ class Watch:
       image.copy(),
       self._agent.receiver.track,
       np.array(self._trail_px).reshape(-1, 2),
-      self._anchor_px,
       self._reading,
       tuple(self._events),
     )

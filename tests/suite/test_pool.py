@@ -8,6 +8,7 @@ import pathlib
 import signal
 import subprocess
 import sys
+import time
 import types
 
 import pytest
@@ -200,4 +201,7 @@ def test_ctrl_c_ends_all_without_a_word_from_the_workers(
   os.killpg(parent.pid, signal.SIGINT)  # As a terminal does.
   _, said = parent.communicate(timeout=30)
   assert said == 'interrupted\n'
+  deadline_s = time.monotonic() + 10
+  while session(parent.pid) and time.monotonic() < deadline_s:
+    time.sleep(0.1)  # The last to go is Python's own resource tracker.
   assert not session(parent.pid)

@@ -6,6 +6,9 @@ import numpy as np
 
 from waggle_tasks.protocol import flight, timing
 
+# An episode goes on a little longer than the 2 s of holding, so that they are
+# found however arrival is measured.
+_HOLD_FRAMES = timing.frames(flight.HOLD_S + 0.2)
 # An observer that leaves its place by more than this has moved.
 MOTION_M = 0.01
 
@@ -64,5 +67,12 @@ class Progress:
 
   @property
   def done(self) -> bool:
-    """Whether it has arrived and held its place for the 2 s asked for."""
-    return self.arrived and self.held_frames >= timing.frames(flight.HOLD_S)
+    """Whether it has arrived and held its place for the 2 s asked for.
+
+    A message that leads nowhere is never done: staying at home does not show
+    that it was read.
+    """
+    if self.target_m is None or not self.arrived:
+      return False
+    leads_m = np.linalg.norm(self.target_m - self.home_m)
+    return bool(leads_m > MOTION_M) and self.held_frames >= _HOLD_FRAMES
