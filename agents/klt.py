@@ -64,7 +64,7 @@ class _Patch:
     """Cuts a square, moved inwards where it would leave the image."""
     size = image.shape[1], image.shape[0]
     left, top = (
-      int(np.clip(centre - side / 2, 0, max(length - side, 0)))
+      int(min(max(centre - side / 2, 0), max(length - side, 0)))
       for centre, length in zip(centre_px, size, strict=True)
     )
     square = image[top : top + side, left : left + side]

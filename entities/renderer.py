@@ -7,23 +7,30 @@ is the same picture whether a part of it was drawn now or is still there from
 before. A window is drawn with an off-centre frustum on the whole picture's
 pixel grid.
 
+A picture shows bodies where they were when they last moved noticeably, and so
+does its camera: what is at rest drifts by less than can be seen, but enough to
+put a sample on the other side of an edge.
+
 Anti-aliasing is supersampling: every pixel is the mean of 2 x 2 samples, which
 is deterministic and needs no multisample buffer.
 """
 
+from collections.abc import Iterator, Sequence
+import contextlib
 import dataclasses
+import math
 
 import cv2
 from dm_control import mjcf
 import mujoco
 import numpy as np
 
-from waggle_tasks.entities import rigid, windows
+from waggle_tasks.entities import framebuffer, rigid, windows
 
 WIDTH, HEIGHT = 640, 480  # Paper, section 'Scene, sensors, ...'.
 _SAMPLES = 2  # Samples per pixel along each axis.
 _HIDDEN_GROUP = 5  # Not drawn by default (MuJoCo, mjvOption.geomgroup).
-# Bodies and cameras that moved less than this since they were drawn are at
+# Bodies and cameras that are nearer than this to where they are shown are at
 # rest: 1e-6 m or rad is under a thousandth of a pixel at half a metre.
 _STILL = 1e-6
 # Whatever of the model shows in a picture and can be changed at run time.
@@ -44,21 +51,23 @@ class _Canvas:
   Attributes:
     pixels: (HEIGHT, WIDTH, 3) uint8, the picture.
     room: (HEIGHT, WIDTH, 3) uint8, the picture without what can move.
-    poses: (M, 7) of the parts when they were last drawn.
-    boxes: (M, 4) windows that held them then.
+    poses: (M, 12) position and rotation of each part, as shown.
+    places: (G, 3) and (G, 9) those of the geoms that can move.
+    eye: (12,) that of the camera.
+    boxes: (M, 4) windows that hold the parts.
     shown: The windows of the picture, each with the parts that it holds.
-    camera: (12,) the camera's pose when the room was drawn.
-    looks: Version of the model's looks when the room was drawn.
+    looks: Version of the model's looks in it; 0 when nothing was drawn.
   """
 
   pixels: np.ndarray
   room: np.ndarray
   poses: np.ndarray | None = None
+  places: tuple[np.ndarray, np.ndarray] | None = None
+  eye: np.ndarray | None = None
   boxes: np.ndarray | None = None
   shown: dict[windows.Window, frozenset[int]] = dataclasses.field(
     default_factory=dict
   )
-  camera: np.ndarray | None = None
   looks: int = 0
 
 
@@ -90,8 +99,13 @@ class Renderer:
     self._perturb = mujoco.MjvPerturb()
     self._camera = mujoco.MjvCamera()
     self._camera.type = mujoco.mjtCamera.mjCAMERA_FIXED
-    self._samples = np.empty(_SAMPLES**2 * HEIGHT * WIDTH * 3, np.uint8)
+    self._frame: framebuffer.Framebuffer | None = None
     self._canvases: dict[int, _Canvas] = {}
+    headlight = model.vis.headlight
+    self._look_fields = [
+      *(getattr(model, name) for name in _LOOKS),
+      *(getattr(headlight, name) for name in _HEADLIGHT),
+    ]  # Views of the model's own memory.
     self._looks: list[bytes] = []
     self._looks_version = 0
     self._find_parts()
@@ -102,10 +116,17 @@ class Renderer:
     self._groups = model.geom_group.copy()
     drawn = self._option.geomgroup[self._groups].astype(bool)
     parts = rigid.find(model, data, drawn)
-    self._geoms = [part.geoms for part in parts]
+    counts = [len(part.geoms) for part in parts]
+    self._geoms = np.concatenate([part.geoms for part in parts])  # (K,)
+    self._part_of = np.repeat(np.arange(len(parts)), counts)  # (K,)
     self._bodies = np.array([part.body for part in parts], int)  # (M,)
+    self._mobile = np.flatnonzero(self._bodies > 0)
+    can_move = self._bodies[self._part_of] > 0
+    self._moving_geoms = self._geoms[can_move]  # (G,)
+    self._moving_part_of = self._part_of[can_move]  # (G,)
     corners = [part.corners_m for part in parts]
     self._corners_m = np.reshape(corners, (-1, 8, 3))  # (M, 8, 3)
+    self._spills = bool(model.mat_reflectance.any())
 
   def image(self, camera_id: int, incremental: bool = True) -> np.ndarray:
     """The camera's picture now.
@@ -122,72 +143,74 @@ class Renderer:
     if camera_id not in self._canvases:
       blank = np.empty((2, HEIGHT, WIDTH, 3), np.uint8)
       self._canvases[camera_id] = _Canvas(*blank)
-    canvas, data = self._canvases[camera_id], self._physics.data
-    poses = np.concatenate(
-      [data.xpos[self._bodies], data.xquat[self._bodies]], axis=1
-    )
-    camera = np.append(data.cam_xpos[camera_id], data.cam_xmat[camera_id])
+    canvas = self._canvases[camera_id]
     self._watch_looks()
-    anew = not incremental or self._must_begin_anew(canvas, camera)
-    if anew:
-      moved = np.arange(len(poses))
-      canvas.poses, canvas.boxes = poses, np.empty((len(poses), 4), int)
-      canvas.camera, canvas.looks = camera, self._looks_version
-      canvas.shown = {}
-    else:
-      change = np.abs(canvas.poses - poses).max(axis=1, initial=0.0)
-      moved = np.flatnonzero(change > _STILL)
-    if moved.size or anew:
-      canvas.poses[moved] = poses[moved]
-      canvas.boxes[moved] = self._project(camera_id, moved)
+    began = canvas.looks == self._looks_version
+    moved, eye_moved = self._take_poses(camera_id, canvas, began)
+    # The rule of the full render: nothing that is kept may be out of date. A
+    # picture is begun anew the first time, when the model's looks changed,
+    # when its camera moved, and always where windows cannot hold what moves.
+    anew = not (incremental and began) or eye_moved or self._spills
+    if anew or moved.size:
+      which = np.arange(len(canvas.poses)) if anew else moved
+      canvas.boxes[which] = self._project(camera_id, canvas, which)
       with self._physics.contexts.gl.make_current() as context:
         context.call(self._redraw, camera_id, canvas, moved, anew)
     return canvas.pixels
 
   def _watch_looks(self) -> None:
-    headlight = self._model.vis.headlight
-    looks = [getattr(self._model, name).tobytes() for name in _LOOKS]
-    looks += [getattr(headlight, name).tobytes() for name in _HEADLIGHT]
+    looks = [field.tobytes() for field in self._look_fields]
     if looks != self._looks:
       self._looks, self._looks_version = looks, self._looks_version + 1
       self._find_parts()  # Their boxes follow from places and sizes.
 
-  def _must_begin_anew(self, canvas: _Canvas, camera: np.ndarray) -> bool:
-    """The rule of the full render: nothing that is kept may be out of date.
+  def _take_poses(
+    self, camera_id: int, canvas: _Canvas, began: bool
+  ) -> tuple[np.ndarray, bool]:
+    """Shows what has moved where it is now.
 
-    A picture is begun anew the first time, when its camera has moved, when
-    the model's looks changed, and always where windows cannot hold what
-    moves, as in reflections.
+    This depends on the poses alone, and not on how a picture is drawn.
+
+    Returns:
+      The parts that moved, (K,), and whether the camera did.
     """
-    return (
-      canvas.poses is None
-      or self._spills
-      or canvas.looks != self._looks_version
-      or bool(np.abs(canvas.camera - camera).max() > _STILL)
-    )
-
-  @property
-  def _spills(self) -> bool:
-    """Whether bodies change the picture outside their windows."""
-    return bool(self._model.mat_reflectance.any())
+    data = self._physics.data.ptr
+    bodies, geoms = self._bodies, self._moving_geoms
+    poses = np.concatenate([data.xpos[bodies], data.xmat[bodies]], axis=1)
+    eye = np.concatenate([data.cam_xpos[camera_id], data.cam_xmat[camera_id]])
+    if not began:
+      canvas.poses, canvas.eye = np.full_like(poses, np.inf), eye
+      canvas.places = np.empty((len(geoms), 3)), np.empty((len(geoms), 9))
+      canvas.boxes = np.empty((len(bodies), 4), int)
+      canvas.looks, canvas.shown = self._looks_version, {}
+    far = np.abs(canvas.poses - poses).max(axis=1, initial=0.0) > _STILL
+    moved = np.flatnonzero(far)
+    if moved.size:
+      canvas.poses[moved] = poses[moved]
+      which = far[self._moving_part_of]
+      canvas.places[0][which] = data.geom_xpos[geoms[which]]
+      canvas.places[1][which] = data.geom_xmat[geoms[which]]
+    eye_moved = bool(np.abs(canvas.eye - eye).max() > _STILL)
+    if eye_moved:
+      canvas.eye = eye
+    return moved, eye_moved
 
   def _redraw(
     self, camera_id: int, canvas: _Canvas, moved: np.ndarray, anew: bool
   ) -> None:
     """Brings a picture up to date; needs the current GL context."""
-    context = self._physics.contexts.mujoco.ptr
-    mujoco.mjr_setBuffer(mujoco.mjtFramebuffer.mjFB_OFFSCREEN, context)
+    if self._frame is None:
+      self._frame = framebuffer.Framebuffer(_SAMPLES * WIDTH, _SAMPLES * HEIGHT)
     self._camera.fixedcamid = camera_id
-    mobile = np.flatnonzero(self._bodies > 0)
-    spills = self._spills
     wanted = {}
-    if not spills:
-      wanted = windows.merge({i: tuple(canvas.boxes[i]) for i in mobile})
-    try:
+    if not self._spills:
+      wanted = windows.merge({i: tuple(canvas.boxes[i]) for i in self._mobile})
+    with self._as_shown(camera_id, canvas):
       if anew:
-        hidden = set() if spills else set(mobile)
+        hidden = [] if self._spills else self._mobile
         self._draw(canvas, _WHOLE, canvas.room, hidden)
         canvas.pixels[:] = canvas.room
+        canvas.shown = {}
       changed = set(moved)
       kept = {
         window: parts
@@ -198,40 +221,52 @@ class Renderer:
         rows, columns = windows.slices(window)
         canvas.pixels[rows, columns] = canvas.room[rows, columns]
       for window in wanted.keys() - kept.keys():
-        self._draw(canvas, window, canvas.pixels, set())
+        self._draw(canvas, window, canvas.pixels, [])
+    canvas.shown = wanted
+
+  @contextlib.contextmanager
+  def _as_shown(self, camera_id: int, canvas: _Canvas) -> Iterator[None]:
+    """Everything is where the picture shows it."""
+    data, geoms = self._physics.data.ptr, self._moving_geoms
+    now = data.geom_xpos[geoms], data.geom_xmat[geoms]
+    eye = data.cam_xpos[camera_id].copy(), data.cam_xmat[camera_id].copy()
+    data.geom_xpos[geoms], data.geom_xmat[geoms] = canvas.places
+    data.cam_xpos[camera_id] = canvas.eye[:3]
+    data.cam_xmat[camera_id] = canvas.eye[3:]
+    try:
+      yield
     finally:
       self._model.geom_group[:] = self._groups
-    canvas.shown = wanted
+      data.geom_xpos[geoms], data.geom_xmat[geoms] = now
+      data.cam_xpos[camera_id], data.cam_xmat[camera_id] = eye
 
   def _draw(
     self,
     canvas: _Canvas,
     window: windows.Window,
     pixels: np.ndarray,
-    hidden: set[int],
+    hidden: Sequence[int],
   ) -> None:
     """Draws a window of a picture into `pixels`, without hidden parts."""
     self._update_scene(canvas, window, hidden)
-    left, top, right, bottom = window
-    width, height = _SAMPLES * (right - left), _SAMPLES * (bottom - top)
-    area = mujoco.MjrRect(0, 0, width, height)
+    width, height = windows.size(window)
     context = self._physics.contexts.mujoco.ptr
-    mujoco.mjr_render(area, self._scene, context)
-    samples = self._samples[: height * width * 3].reshape(height, width, 3)
-    mujoco.mjr_readPixels(samples, None, area, context)
-    means = cv2.resize(
-      samples, (right - left, bottom - top), interpolation=cv2.INTER_AREA
+    samples = self._frame.draw(
+      context, self._scene, _SAMPLES * width, _SAMPLES * height
     )
+    means = cv2.resize(samples, (width, height), interpolation=cv2.INTER_AREA)
+    means = cv2.cvtColor(means, cv2.COLOR_RGBA2RGB)
     pixels[windows.slices(window)] = means[::-1]  # OpenGL counts from below.
 
   def _update_scene(
-    self, canvas: _Canvas, window: windows.Window, hidden: set[int]
+    self, canvas: _Canvas, window: windows.Window, hidden: Sequence[int]
   ) -> None:
     """Fills the scene with what the window can show, seen through it."""
-    for part, geoms in enumerate(self._geoms):
-      seen = part not in hidden and windows.touch(window, canvas.boxes[part])
-      group = self._groups[geoms] if seen else _HIDDEN_GROUP
-      self._model.geom_group[geoms] = group
+    seen = windows.touching(window, canvas.boxes)
+    seen[hidden] = False
+    self._model.geom_group[self._geoms] = np.where(
+      seen[self._part_of], self._groups[self._geoms], _HIDDEN_GROUP
+    )
     mujoco.mjv_updateScene(
       self._model, self._physics.data.ptr, self._option, self._perturb,
       self._camera, mujoco.mjtCatBit.mjCAT_ALL, self._scene,
@@ -245,17 +280,18 @@ class Renderer:
       camera.frustum_top = half_height * (1 - 2 * top / HEIGHT)
       camera.frustum_bottom = half_height * (1 - 2 * bottom / HEIGHT)
 
-  def _project(self, camera_id: int, parts: np.ndarray) -> np.ndarray:
+  def _project(
+    self, camera_id: int, canvas: _Canvas, parts: np.ndarray
+  ) -> np.ndarray:
     """Windows (K, 4) int that hold parts (K,); empty when out of view."""
-    model, data = self._model, self._physics.data
-    bodies = self._bodies[parts]
-    rotation = data.xmat[bodies].reshape(-1, 3, 3)
+    model, poses = self._model, canvas.poses[parts]
+    rotation = poses[:, 3:].reshape(-1, 3, 3)
     corners = self._corners_m[parts] @ rotation.swapaxes(1, 2)  # (K, 8, 3)
-    from_eye = corners + (data.xpos[bodies] - data.cam_xpos[camera_id])[:, None]
-    in_eye = from_eye @ data.cam_xmat[camera_id].reshape(3, 3)
+    from_eye = corners + (poses[:, :3] - canvas.eye[:3])[:, None]
+    in_eye = from_eye @ canvas.eye[3:].reshape(3, 3)
     near = model.vis.map.znear * model.stat.extent
     fovy = model.cam_fovy[camera_id]
-    focal_px = HEIGHT / 2 / np.tan(np.radians(fovy) / 2)
+    focal_px = HEIGHT / 2 / math.tan(math.radians(fovy) / 2)
     orthographic = mujoco.mjtProjection.mjPROJ_ORTHOGRAPHIC
     if model.cam_projection[camera_id] == orthographic:
       # Its `fovy` is the picture's height in m, whatever the depth: as 1 m.

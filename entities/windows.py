@@ -8,7 +8,8 @@ import numpy as np
 _EDGES = np.array(
   [(a, a | bit) for bit in (1, 2, 4) for a in range(8) if not a & bit]
 )
-_MARGIN_PX = 1
+# Left, top, right, bottom; the last pixel begins a pixel before its end.
+_MARGINS_PX = np.array([-1, -1, 2, 2])
 
 Window = tuple[int, int, int, int]
 
@@ -24,6 +25,19 @@ def slices(window: Window) -> tuple[slice, slice]:
   """The rows and columns of a window."""
   left, top, right, bottom = window
   return slice(top, bottom), slice(left, right)
+
+
+def touching(window: Window, boxes: np.ndarray) -> np.ndarray:
+  """Which of (M, 4) boxes share a pixel with a window, (M,) bool."""
+  first = np.maximum(boxes[:, :2], window[:2])
+  last = np.minimum(boxes[:, 2:], window[2:])
+  return (first < last).all(axis=1)
+
+
+def size(window: Window) -> tuple[int, int]:
+  """Width and height of a window."""
+  left, top, right, bottom = window
+  return right - left, bottom - top
 
 
 def merge(
@@ -70,6 +84,13 @@ def around(
   Returns:
     (K, 4) int; empty windows for boxes out of view.
   """
+  depth = -corners_m[..., 2]  # (K, 8)
+  if (depth > near_m).all():  # The usual case, and the fast one.
+    places = corners_m[..., :2] * (focal_px, -focal_px)
+    places /= depth[..., None]
+    places += (size[0] / 2, size[1] / 2)  # (K, 8, 2)
+    low, high = places.min(axis=1), places.max(axis=1)
+    return _edges(low, high, size)
   begin, end = corners_m[:, _EDGES[:, 0]], corners_m[:, _EDGES[:, 1]]
   depth_begin, depth_end = -begin[..., 2], -end[..., 2]  # (K, 12)
   cut = (depth_begin > near_m) != (depth_end > near_m)
@@ -80,7 +101,18 @@ def around(
   depth = np.where(seen, -points[..., 2], 1.0)
   places = points[..., :2] * (focal_px, -focal_px) / depth[..., None]
   places += np.array(size) / 2  # (K, 20, 2)
-  low = np.where(seen[..., None], places, np.inf).min(axis=1) - _MARGIN_PX
-  high = np.where(seen[..., None], places, -np.inf).max(axis=1) + 1 + _MARGIN_PX
-  edges = np.concatenate([low, high], axis=1)
-  return np.clip(np.floor(edges), 0, [*size, *size]).astype(int)
+  low = np.where(seen[..., None], places, np.inf).min(axis=1)
+  high = np.where(seen[..., None], places, -np.inf).max(axis=1)
+  return _edges(low, high, size)
+
+
+def _edges(
+  low_px: np.ndarray, high_px: np.ndarray, size: tuple[int, int]
+) -> np.ndarray:  # (K, 4)
+  """Windows around boxes from `low_px` to `high_px`, (K, 2) each."""
+  edges = np.concatenate([low_px, high_px], axis=1)
+  edges += _MARGINS_PX
+  np.floor(edges, out=edges)
+  np.maximum(edges, 0, out=edges)
+  np.minimum(edges, (*size, *size), out=edges)
+  return edges.astype(int)

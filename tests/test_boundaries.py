@@ -33,7 +33,9 @@ PARTS = frozenset({'protocol', 'entities', 'arenas'})
 ROOMS = {
   'protocol': Room('waggle_tasks/protocol', others=frozenset({'numpy'})),
   'entities': Room(
-    'entities', frozenset({'protocol'}), SIMULATOR | {'numpy', 'cv2'}
+    'entities',
+    frozenset({'protocol'}),
+    SIMULATOR | {'numpy', 'cv2', 'OpenGL'},
   ),
   'arenas': Room('arenas', frozenset({'protocol'}), SIMULATOR | {'numpy'}),
   'agents': Room(

@@ -196,3 +196,33 @@ def test_a_spoilt_episode_leaves_the_next_one_clean(
   clean = film(environment)
   assert (spoilt[0] != expected[0]).any()
   np.testing.assert_array_equal(clean, expected)
+
+
+def test_environments_side_by_side_do_not_meet(
+  dancing: Load, film: Film, hover: Fixture
+) -> None:
+  others = [{}, {'payload': '111111', 'layout': 'line'}]
+  alone = [film(dancing(**changes)) for changes in others]
+  pair = [dancing(**changes) for changes in others]
+  steps = [each.reset() for each in pair]
+  for frame in range(11):
+    for step, expected in zip(steps, alone, strict=True):
+      seen = [each['camera'] for each in step.observation]
+      np.testing.assert_array_equal(seen, expected[:, frame])
+    steps = [
+      each.step(hover(step.observation))
+      for each, step in zip(pair, steps, strict=True)
+    ]
+
+
+def test_a_model_that_is_compiled_anew_is_seen_anew(
+  dancing: Load, film: Film
+) -> None:
+  expected = film(dancing())
+  task = dancing().task
+  environment = composer.Environment(
+    task, strip_singleton_obs_buffer_dim=True, recompile_mjcf_every_episode=True
+  )
+  for _ in range(2):
+    np.testing.assert_array_equal(film(environment), expected)
+  environment.close()

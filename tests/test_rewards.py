@@ -37,8 +37,8 @@ def test_flying_the_message_earns_one_and_ends_the_episode(
   assert np.count_nonzero(rewards) == observers
   arrival_s = 0.04 * (1 + rewards[:, 0].argmax())
   assert arrival_s == pytest.approx(HURRIED_END_S + 3.14, abs=0.08)
-  # Held for 2 s, and then there is nothing left to do.
-  assert 0.04 * len(rewards) == pytest.approx(arrival_s + 2.0, abs=0.05)
+  # Held for 2 s and a little more, and then there is nothing left to do.
+  assert 2.0 <= 0.04 * len(rewards) - arrival_s < 2.4
   assert all(each.discount == 1 for each in steps[1:])
 
 

@@ -129,6 +129,22 @@ class Broadcast(composer.Task):
     """Whether this episode's dance is a whole message."""
     return self.performer.is_whole
 
+  @property
+  def physics_steps_per_control_step(self) -> int:
+    """One for composer, which else runs Python between physics steps."""
+    return 1
+
+  def before_substep(
+    self,
+    physics: mjcf.Physics,
+    action: Sequence[np.ndarray],
+    random_state: np.random.RandomState,
+  ) -> None:
+    """Makes all physics steps of the control step but the last."""
+    del action, random_state
+    steps = round(self.control_timestep / self.physics_timestep)
+    physics.step(steps - 1)
+
   def before_step(
     self,
     physics: mjcf.Physics,
@@ -173,19 +189,19 @@ class Broadcast(composer.Task):
         self._requests.setdefault(gate.name, plan)
     if not self._requests:
       return
-    plans = {gate.name: gate.plan for gate in self._gates if gate.plan}
-    others = {**positions_m, **plans, **self._requests}
-    for gate in self._gates:
-      plan = self._requests.get(gate.name)
-      if plan and safety.is_due(plan, time_s):
-        rest = {k: v for k, v in others.items() if k != gate.name}
-        reason = safety.conflict(plan, rest, self._parts.minimum_spacing_m)
-        gate.judge(plan, reason)
-    self._requests = {
+    due = {
       name: plan
       for name, plan in self._requests.items()
-      if not safety.is_due(plan, time_s)
+      if safety.is_due(plan, time_s)
     }
+    plans = {gate.name: gate.plan for gate in self._gates if gate.plan}
+    others = {**positions_m, **plans, **self._requests}
+    reasons = safety.refuse(
+      due, others, positions_m, self._parts.minimum_spacing_m
+    )
+    for gate in self._gates:
+      if gate.name in due:
+        gate.judge(self._requests.pop(gate.name), reasons.get(gate.name))
 
   def after_step(
     self, physics: mjcf.Physics, random_state: np.random.RandomState

@@ -76,6 +76,39 @@ def conflict(
   return None
 
 
+def refuse(
+  due: Mapping[str, flight.Flight],
+  others: Mapping[str, flight.Flight | np.ndarray],
+  positions_m: Mapping[str, np.ndarray],
+  minimum_m: float,
+) -> dict[str, str]:
+  """Which of several plans to refuse, and why.
+
+  Who is refused stays where it is, so whoever counted on its leaving is
+  refused too.
+
+  Args:
+    due: The plans to judge, by vehicle name.
+    others: By name, every vehicle's plan, or (3,) where it stays.
+    positions_m: By name, where every vehicle is, (3,) each.
+    minimum_m: Smallest distance allowed between two centres of mass.
+
+  Returns:
+    The reasons by name.
+  """
+  others, reasons = dict(others), {}
+  while True:
+    found = {}
+    for name in due.keys() - reasons.keys():
+      rest = {k: v for k, v in others.items() if k != name}
+      if reason := conflict(due[name], rest, minimum_m):
+        found[name] = reason
+    if not found:
+      return reasons
+    reasons |= found
+    others |= {name: positions_m[name] for name in found}
+
+
 class Gate:
   """Lets one observer's references through once its command is accepted.
 

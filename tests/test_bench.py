@@ -1,0 +1,374 @@
+"""`waggle bench`: what it prints, what its checks find, what it leaves."""
+
+from collections.abc import Callable
+import functools
+import itertools
+import json
+import os
+import pathlib
+import subprocess
+import sys
+import time
+
+import numpy as np
+import pytest
+
+from waggle_tasks import registry, suites
+from waggle_tasks.entities import renderer
+from waggle_tasks.experiments.bench_parts import (
+  cameras,
+  events,
+  findings,
+  loops,
+  memory,
+  processes,
+  report,
+  sameness,
+  sections,
+  stages,
+)
+
+FRAME_S = 0.04
+
+
+def bench(*arguments: str) -> subprocess.CompletedProcess[str]:
+  """Runs the command in a new process: a launcher's flags are global."""
+  module = 'waggle_tasks.experiments.main'
+  return subprocess.run(
+    [sys.executable, '-m', module, 'bench', *arguments],
+    capture_output=True,
+    text=True,
+    check=False,
+  )
+
+
+# What the parts of the benchmark could have measured.
+MEASURED = {
+  'cameras': cameras.Cameras(
+    {
+      cameras.STOCK: [0.05, 0.06, 0.10],
+      cameras.STOCK_PLAIN: [0.005, 0.006, 0.010],
+      cameras.FULL: [0.010, 0.012, 0.020],
+      cameras.INCREMENTAL: [0.0005, 0.0006, 0.0005],
+    },
+    {cameras.MOVES: [0.001], cameras.RESTS: [0.0001]},
+    {cameras.MOVES: 0.6, cameras.RESTS: 0.4},
+    {
+      cameras.STOCK: 36, cameras.STOCK_PLAIN: 36, cameras.FULL: 36,
+      cameras.INCREMENTAL: 7560,
+    },
+  ),
+  'stages': [{'physics': 1e-4, 'rendering': 3e-4, stages.OTHER: 1e-4}],
+  'realtime': [
+    loops.Loop(3, 2500, 9.0, 10.0, 9.5), loops.Loop(3, 2500, 7.0, 8.0, 7.5),
+    loops.Loop(3, 2500, 19.0, 20.0, 9.5),
+  ],
+  'observers': [
+    loops.Loop(count, 100, count * cost_s, 1.0, 1.0)
+    for cost_s in (0.1, 0.2)
+    for count in sections.OBSERVERS
+  ],
+  'memory': sections.Memory(310.0, [250.0, 260.0, 261.0]),
+  'workers': {1: [10.0, 12.0, 11.0], 2: [19.0, 24.0, 22.0]},
+}  # fmt: skip
+
+
+def test_ratios_are_medians_of_what_was_measured_side_by_side() -> None:
+  assert report.ratios(MEASURED) == pytest.approx(
+    {
+      'stock camera / incremental camera': 100.0,
+      'stock, no shadows or multisampling / incremental camera': 10.0,
+      'our full render / incremental camera': 20.0,
+      'simulated time / time on one core': 10.0,
+      'cost of a receiver and frame, 16 observers / 2': 1.0,
+      'throughput, 2 processes / 1': 2.0,
+    }
+  )
+
+
+def test_a_report_tells_the_ratios_before_anything_else() -> None:
+  first, *tables = report.text(MEASURED).split('\n\n')
+  assert first.splitlines()[0] == 'ratio'
+  assert len(first.splitlines()) == 2 + len(report.ratios(MEASURED))
+  assert len(tables) == len(sections.SECTIONS)
+  lines = [line for each in tables for line in each.splitlines()]
+  assert {
+    'stock 60.000 36',
+    'all rest 0.100 40%',
+    'rendering 300 60%',
+    'everything 10.00 10.0',
+    'broadcast 3 261',
+  } <= {' '.join(line.split()) for line in lines}
+  assert max(map(len, lines)) <= 80
+
+
+def test_a_part_alone_has_a_report_of_its_own() -> None:
+  text = report.text({'memory': MEASURED['memory']})
+  assert text.startswith('peak memory of a process')
+
+
+@pytest.mark.parametrize(
+  ('call', 'message'),
+  [
+    (
+      functools.partial(sections.chosen, ['stages', 'camera']),
+      r"`only` must be one of \['cameras', .*\]: got 'camera'\. Did you mean",
+    ),
+    (
+      functools.partial(sections.Settings, 'a', repeats=0),
+      r'`repeats` must be between 1 and 1000: got 0',
+    ),
+    (
+      functools.partial(sections.Settings, 'a', simulated_s=float('nan')),
+      r'`simulated_s` must be a finite number: got nan',
+    ),
+    (
+      functools.partial(sections.Settings, 'a', simulated_s=0.04),
+      r'`simulated_s` must be between 0\.08 and 600: got 0\.04',
+    ),
+  ],
+)
+def test_a_measurement_that_cannot_be_made_is_refused(
+  call: Callable[[], object], message: str
+) -> None:
+  with pytest.raises(sections.BenchError, match=message):
+    call()
+
+
+def test_parts_are_measured_in_their_own_order() -> None:
+  assert sections.chosen(['workers', 'cameras']) == ['cameras', 'workers']
+  assert sections.chosen([]) == [*sections.SECTIONS]
+
+
+def test_a_length_that_is_asked_for_holds_for_every_broadcast() -> None:
+  settings = sections.Settings('a', simulated_s=3.0)
+  for scene in (settings.whole, settings.gesture, settings.glimpse):
+    assert scene.episode_s == 3.0
+
+
+def test_unasked_the_main_broadcast_is_whole_and_others_are_shorter() -> None:
+  settings = sections.Settings('a')
+  assert settings.whole == registry.find('broadcast')
+  assert settings.gesture.episode_s == 4.0 + 7.5 + 4.0
+  assert settings.glimpse.episode_s < settings.gesture.episode_s
+  assert sections.Settings('a', long=True).glimpse == settings.whole
+
+
+@pytest.mark.parametrize(
+  ('name', 'clock'),
+  [
+    ('llvmpipe (LLVM 15.0.6, 256 bits)', time.process_time),
+    ('softpipe', time.process_time),
+    ('NVIDIA H200/PCIe/SSE2', time.perf_counter),
+    ('', time.perf_counter),
+  ],
+)
+def test_processor_time_counts_only_where_the_processor_draws(
+  name: str, clock: processes.Clock
+) -> None:
+  assert processes.clock(name) is clock
+
+
+def test_a_process_that_measures_has_one_core_and_one_drawing_thread() -> None:
+  core = processes.cores()[0]
+  with processes.worker(core) as worker:
+    assert worker.submit(os.getenv, 'LP_NUM_THREADS').result() == '1'
+    assert worker.submit(os.sched_getaffinity, 0).result() == {core}
+
+
+def test_a_stage_inside_another_is_not_counted_twice() -> None:
+  timer = stages.Timer(itertools.count().__next__)  # A second for each look.
+  inner = timer.timed(lambda: None, 'inner', '')
+  outer = timer.timed(lambda: [inner(), inner()], 'outer', '')
+  elsewhere = timer.timed(lambda: None, 'inner', 'outer')
+  outer()
+  elsewhere()
+  assert timer.seconds['inner'] == 2
+  assert timer.seconds['outer'] == 3
+
+
+def test_a_stage_that_raises_has_ended() -> None:
+  timer = stages.Timer(itertools.count().__next__)
+  with pytest.raises(ZeroDivisionError):
+    timer.timed(lambda: 1 / 0, 'failing', '')()
+  timer.timed(lambda: None, 'next', '')()
+  assert timer.seconds['failing'] == 1
+
+
+def test_timing_a_broadcast_leaves_every_call_as_it_was() -> None:
+  def calls() -> list[object]:
+    return [vars(each.owner).get(each.name) for each in stages.STAGES]
+
+  before = calls()
+  scene = registry.find('broadcast', observers=1, duration_s=5 * FRAME_S)
+  (found,) = stages.measure(scene, 1, time.perf_counter)
+  assert calls() == before
+  assert {*found} == {each.stage for each in stages.STAGES} | {stages.OTHER}
+  spent = [found[name] for name in ('physics', 'rendering', 'receiver: grey')]
+  assert min(spent) > 0.0
+
+
+def test_a_loop_counts_steps_and_not_what_is_around_them() -> None:
+  scene = registry.find('broadcast', observers=1, duration_s=5 * FRAME_S)
+  loop = loops.run(scene, clock=itertools.count(0.0, 0.5).__next__)
+  assert (loop.observers, loop.frames) == (1, 5)
+  assert loop.simulated_s == pytest.approx(5 * FRAME_S)
+  # The clock was looked at once for each time step.
+  assert loop.loop_s == 2.5
+  assert loop.receiver_frame_s == 0.5
+  assert loop.whole_s > 0.0
+
+
+def test_peak_memory_never_falls() -> None:
+  scene = registry.find('broadcast', observers=1, duration_s=FRAME_S)
+  peaks_mb = memory.measure(scene, 2)
+  assert 50.0 < peaks_mb[0] <= peaks_mb[1] < 10_000.0
+
+
+def test_the_flight_that_cameras_draw_is_danced_read_and_flown(
+  short: dict[str, object],
+) -> None:
+  scene = registry.find('broadcast', observers=1, **short)
+  flight = cameras.fly(scene)
+  assert {*flight.phases} == {*cameras.PHASES}
+  assert flight.phases[:3] == (cameras.RESTS,) * 3
+  observer_m = flight.qpos[:, 7:10]
+  np.testing.assert_allclose(
+    observer_m[-1] - observer_m[0], [0.0, 0.4, 0.0], atol=0.015
+  )
+
+
+def test_every_camera_draws_the_flight() -> None:
+  scene = registry.find('broadcast', observers=2, duration_s=4 * FRAME_S)
+  found = cameras.measure(scene, 1, itertools.count().__next__)
+  # Its clock ticks once for the images of one frame, which are two.
+  assert {*found.mean_s} == {
+    cameras.STOCK, cameras.STOCK_PLAIN, cameras.FULL, cameras.INCREMENTAL,
+  }  # fmt: skip
+  assert [*found.mean_s.values()] == [[0.5]] * 4
+  assert found.images[cameras.INCREMENTAL] == 2 * 5
+  assert sum(found.share.values()) == pytest.approx(1.0)
+
+
+@pytest.fixture(scope='module')
+def honest() -> list[sameness.Comparison]:
+  return list(sameness.compare(scenes=2, seed=2))
+
+
+def test_incremental_pictures_are_those_of_a_full_render(
+  honest: list[sameness.Comparison],
+) -> None:
+  assert len(honest) == 20 + 2 * 20  # The second scene has two cameras.
+  assert findings.worst_levels(honest) <= sameness.MAX_LEVELS
+  text = findings.pictures(honest)
+  assert 'grey levels at most in 60 pictures:\nthe same, 1 is allowed' in text
+
+
+def test_the_check_changes_scenes_in_many_ways(
+  honest: list[sameness.Comparison],
+) -> None:
+  changes = {change.__name__ for change in sameness.CHANGES}
+  assert len({each.change for each in honest} & changes) >= 5
+
+
+class Forgetful(renderer.Renderer):
+  """Does not look again at a band of the picture."""
+
+  band: np.ndarray | None = None
+
+  def image(self, camera_id: int, incremental: bool = True) -> np.ndarray:
+    picture = super().image(camera_id, incremental).copy()
+    if self.band is None:
+      self.band = picture[200:280].copy()
+    picture[200:280] = self.band
+    return picture
+
+
+def test_the_check_finds_a_part_that_was_forgotten() -> None:
+  found = list(sameness.compare(1, seed=3, incremental=Forgetful))
+  assert findings.worst_levels(found) > 20
+  text = findings.pictures(found)
+  assert 'NOT the same' in text
+  assert 'vehicles' in text
+
+
+def test_a_difference_is_its_largest_level_and_its_number_of_pixels() -> None:
+  one = np.zeros((4, 5, 3), np.uint8)
+  other = one.copy()
+  other[0, 0] = 3, 0, 9
+  other[2, 1, 1] = 1
+  assert sameness.Difference.of(one, other) == sameness.Difference(9, 2)
+  assert sameness.Difference.of(other, one) == sameness.Difference(9, 2)
+  assert sameness.Difference.of(one, one) == sameness.Difference(0, 0)
+
+
+@pytest.mark.parametrize(
+  ('one', 'other', 'pair'),
+  [
+    ([], [], None),
+    (['a', 'b'], ['a', 'b'], None),
+    (['a', 'b'], ['a', 'c'], ('b', 'c')),
+    (['a'], ['a', 'b'], ('', 'b')),
+    (['a', 'b'], ['a'], ('b', '')),
+  ],
+)
+def test_event_logs_differ_at_their_first_unequal_line(
+  one: list[str], other: list[str], pair: tuple[str, str] | None
+) -> None:
+  assert events.difference(one, other) == pair
+
+
+def test_either_camera_gives_the_same_events() -> None:
+  scene = registry.find('broadcast', observers=1, duration_s=3.2)
+  case = suites.Case('a-null', 'own', '', scene)
+  *passed_s, verdict = events.compare([case], workers=2)
+  assert verdict == events.Verdict('a-null', 1, None)
+  assert sum(passed_s) == pytest.approx(2 * 3.2)
+
+
+def test_unequal_event_logs_are_shown() -> None:
+  found = [
+    events.Verdict('one', 17, None),
+    events.Verdict('two', 17, ('{"time_s": 3.0}', '')),
+  ]
+  lines = findings.event_logs(found).splitlines()
+  assert lines[-3:] == [
+    'two, incremental: {"time_s": 3.0}',
+    'two, full: nothing',
+    '1 of 2 event logs are equal.',
+  ]
+
+
+def test_the_command_prints_a_report_and_leaves_json(
+  tmp_path: pathlib.Path,
+) -> None:
+  path = tmp_path / 'bench.json'
+  options = ('--only=realtime', '--repeats=1', '--simulated_s=0.08')
+  child = bench(*options, f'--json={path}')
+  assert child.returncode == 0, child.stderr
+  title, clock, _, first, *_ = child.stdout.splitlines()
+  found = json.loads(path.read_text(encoding='utf-8'))
+  assert title.startswith(f'{found["renderer"]}, {found["cores"]} cores, load')
+  assert clock.endswith(f'images and loops by {found["clock"]}.')
+  assert first == 'ratio'
+  (loop,) = found['measured']['realtime']
+  assert loop['frames'] == 2
+  assert found['ratios'] == {
+    'simulated time / time on one core': pytest.approx(0.08 / loop['whole_s'])
+  }
+  again = bench(*options, f'--json={path}')
+  assert again.returncode == 2
+  assert again.stdout == ''
+  assert again.stderr == (
+    'waggle bench: `json` must be a new file in a folder that exists: got'
+    f' {str(path)!r}\n'
+  )
+
+
+def test_the_command_checks_pictures(tmp_path: pathlib.Path) -> None:
+  path = tmp_path / 'check.json'
+  child = bench('--check', '--scenes=1', f'--json={path}')
+  assert child.returncode == 0, child.stderr
+  assert 'in 20 pictures:\nthe same, 1 is allowed.' in child.stdout
+  pictures = json.loads(path.read_text(encoding='utf-8'))['pictures']
+  assert max(each['incremental']['levels'] for each in pictures) <= 1
