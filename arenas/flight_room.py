@@ -38,6 +38,26 @@ _LIGHTS = {
 }
 
 
+def check_inside(name: str, pose: layouts.Pose) -> None:
+  """Refuses a place outside of the room.
+
+  Args:
+    name: The vehicle's.
+    pose: Its place.
+
+  Raises:
+    layouts.LayoutError: naming the vehicle, the rule and the place.
+  """
+  x_m, y_m, z_m = pose.position_m
+  if not (
+    abs(x_m) < HALF_WIDTH_M and abs(y_m) < HALF_DEPTH_M and 0.0 < z_m < HEIGHT_M
+  ):
+    raise layouts.LayoutError(
+      f'`pose` of {name} must lie in the room, |x| < {HALF_WIDTH_M},'
+      f' |y| < {HALF_DEPTH_M} and 0 < z < {HEIGHT_M} m: got {pose.position_m}'
+    )
+
+
 class FlightRoom(composer.Arena):
   """A studio with a slate floor and the performance area at its middle.
 
@@ -96,17 +116,8 @@ class FlightRoom(composer.Arena):
         f'`name` of a vehicle must be new to the room, which holds {taken}:'
         f' got {name!r}'
       )
-    x_m, y_m, z_m = pose.position_m
-    if not (
-      abs(x_m) < HALF_WIDTH_M
-      and abs(y_m) < HALF_DEPTH_M
-      and 0.0 < z_m < HEIGHT_M
-    ):
-      raise layouts.LayoutError(
-        f'`pose` of {name} must lie in the room, |x| < {HALF_WIDTH_M},'
-        f' |y| < {HALF_DEPTH_M} and 0 < z < {HEIGHT_M} m:'
-        f' got {pose.position_m}'
-      )
+    check_inside(name, pose)
+    x_m, y_m, _ = pose.position_m
     frame = self.add_free_entity(vehicle)
     frame.pos = pose.position_m
     half_rad = pose.yaw_rad / 2.0

@@ -13,6 +13,7 @@ import importlib
 import os
 import pathlib
 import re
+import signal
 import sys
 import textwrap
 import types
@@ -55,6 +56,8 @@ def run(
     argv: Its name or path, then its arguments; `sys.argv` when None.
     check_versions: Whether to refuse versions that cannot run together.
   """
+  # A polite kill ends like Ctrl-C: what is half written is removed.
+  signal.signal(signal.SIGTERM, signal.default_int_handler)
   argv = list(sys.argv if argv is None else argv)
   program = f'waggle {pathlib.PurePath(argv[0]).stem}'
   try:

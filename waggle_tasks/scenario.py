@@ -5,7 +5,7 @@ import math
 
 from waggle_tasks import appearance as appearance_lib
 from waggle_tasks import errors
-from waggle_tasks.arenas import layouts
+from waggle_tasks.arenas import flight_room, layouts
 from waggle_tasks.entities import eye, observer
 from waggle_tasks.protocol import checks, frame, gestures, timing
 from waggle_tasks.protocol import payload as payload_lib
@@ -140,7 +140,8 @@ class Scenario:
 
     Raises:
       ScenarioError: if the layout is not known.
-      layouts.LayoutError: if two vehicles would be too close.
+      layouts.LayoutError: if two vehicles would be too close, or one outside
+        of the room.
     """
     poses = {'performer': layouts.performer_pose()}
     places = self._layout().poses(self.observers)
@@ -150,6 +151,8 @@ class Scenario:
       )
     for index, pose in enumerate(places):
       poses[f'observer_{index + 1}'] = pose
+    for name, pose in poses.items():
+      flight_room.check_inside(name, pose)
     # Two neighbours can come closer by the jitter of both, along x and y.
     nearer_m = 2 * math.hypot(self.jitter_m, self.jitter_m)
     layouts.check_spacing(poses, safety.MINIMUM_SPACING_M + nearer_m)
