@@ -155,7 +155,7 @@ def _end(worker: _Worker) -> None:
 def _serve(pipe: connection.Connection) -> None:
   """What a worker process does; it ends when its parent is gone."""
   signal.signal(signal.SIGINT, signal.SIG_IGN)  # The parent ends workers.
-  os.environ.setdefault('LP_NUM_THREADS', '1')  # Workers share the cores.
+  os.environ.setdefault('LP_NUM_THREADS', '0')  # Draw in this thread.
   while True:
     try:
       job = pipe.recv()

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 import dataclasses
+import gc
 
 import dm_env
 import numpy as np
@@ -66,6 +67,7 @@ def run(
     return _run(environment, team, watchers)
   finally:
     environment.close()
+    gc.collect()  # Environments are cycles, and large.
 
 
 def _run(

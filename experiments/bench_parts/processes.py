@@ -19,7 +19,7 @@ Clock = Callable[[], float]
 
 # Mesa's software renderers (https://docs.mesa3d.org/drivers/llvmpipe.html).
 _SOFTWARE = ('llvmpipe', 'softpipe')
-_THREADS = ('LP_NUM_THREADS', 'OMP_NUM_THREADS', 'OPENBLAS_NUM_THREADS')
+_THREADS = ('OMP_NUM_THREADS', 'OPENBLAS_NUM_THREADS')
 
 
 def cores() -> list[int]:
@@ -64,6 +64,7 @@ def alone(function: Callable[..., _Result], *arguments: object) -> _Result:
 def _prepare(core: int | None) -> None:
   """Confines a process, before it loads what it measures."""
   os.environ.update(dict.fromkeys(_THREADS, '1'))
+  os.environ['LP_NUM_THREADS'] = '0'  # Draw in the calling thread.
   if core is not None and hasattr(os, 'sched_setaffinity'):
     os.sched_setaffinity(0, {core})
   import cv2
