@@ -1,0 +1,116 @@
+"""One short broadcast with everything kept, and videos of a clip."""
+
+from collections.abc import Callable, Sequence
+import dataclasses
+import datetime
+import importlib
+import pathlib
+import shutil
+import types
+
+import cv2
+import numpy as np
+import pytest
+
+from waggle_tasks import scenario
+from waggle_tasks.experiments import (
+  capture,
+  evaluator,
+  provenance,
+  records,
+)
+from waggle_tasks.experiments import rollout as rollout_lib
+from waggle_tasks.experiments.video import film
+
+HERE = pathlib.Path(__file__).parent
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class Recorded:
+  """A run folder and what it was made from; not to be written to."""
+
+  folder: pathlib.Path
+  scene: scenario.Scenario
+  rollout: rollout_lib.Rollout
+  verdict: evaluator.Verdict
+
+
+@pytest.fixture(scope='session')
+def recorded(
+  short: dict[str, object], tmp_path_factory: pytest.TempPathFactory
+) -> Recorded:
+  """A broadcast with two observers, the second blind, filmed and captured."""
+  scene = scenario.Scenario(
+    control='black_input', observers=2, half_span_deg=10.0, **short
+  )
+  folder = tmp_path_factory.mktemp('run')
+  began = datetime.datetime.now(datetime.UTC)
+  with (
+    film.Film(folder, scene, fps=5.0, scale=0.5) as camera,
+    capture.Recorder(folder) as recorder,
+  ):
+    rollout = rollout_lib.run(scene, 'klt', [camera, recorder])
+  verdict = evaluator.evaluate(scene, rollout)
+  origin = provenance.Provenance.of('waggle x', rollout.renderer, began)
+  records.write_run(folder, scene, 'klt', rollout, verdict, origin)
+  return Recorded(folder, scene, rollout, verdict)
+
+
+@pytest.fixture
+def copied(recorded: Recorded, tmp_path: pathlib.Path) -> pathlib.Path:
+  """A copy of the run folder, to be damaged."""
+  folder = tmp_path / 'copy'
+  shutil.copytree(recorded.folder, folder)
+  return folder
+
+
+@pytest.fixture(scope='session')
+def video(
+  tmp_path_factory: pytest.TempPathFactory,
+) -> Callable[..., pathlib.Path]:
+  """Writes pictures, (H, W, 3) uint8 RGB each, as a video of some kind."""
+
+  def write(
+    images: Sequence[np.ndarray],
+    name: str = 'x.webm',
+    codec: str = 'VP80',
+    fps: float = 25.0,
+  ) -> pathlib.Path:
+    path = tmp_path_factory.mktemp('video') / name
+    height, width, _ = images[0].shape
+    fourcc = cv2.VideoWriter.fourcc(*codec)
+    writer = cv2.VideoWriter(
+      str(path), cv2.CAP_FFMPEG, fourcc, fps, (width, height)
+    )
+    assert writer.isOpened()
+    for image in images:
+      writer.write(image[..., ::-1])
+    writer.release()
+    return path
+
+  return write
+
+
+@pytest.fixture(scope='session')
+def tiny(video: Callable[..., pathlib.Path]) -> Callable[..., pathlib.Path]:
+  """A video of three seconds of a moving disc, 96 x 64."""
+
+  def write(name: str = 'x.webm', codec: str = 'VP80') -> pathlib.Path:
+    images = [np.full((64, 96, 3), 90, np.uint8) for _ in range(75)]
+    for number, image in enumerate(images):
+      cv2.circle(image, (10 + number, 32), 6, (230, 120, 20), -1)
+    return video(images, name, codec)
+
+  return write
+
+
+@pytest.fixture
+def chromium(
+  monkeypatch: pytest.MonkeyPatch,
+) -> types.ModuleType:
+  """The module that drives Chromium; skips where there is none."""
+  monkeypatch.syspath_prepend(HERE)
+  module = importlib.import_module('chromium')
+  if module.find() is None:
+    pytest.skip(f'needs one of {", ".join(module.NAMES)}')
+  return module
