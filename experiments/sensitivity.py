@@ -7,16 +7,21 @@ alone, up and down; then every vehicle starts with a jitter of 1 cm, seeds 0 to
 moment, the same command goes on where it was.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 import dataclasses
 import pathlib
 import sys
 
 from absl import flags
 
-from waggle_tasks import appearance, suites
-from waggle_tasks.experiments import launch, provenance, suite_runner, table
-from waggle_tasks.protocol import checks, gestures
+from waggle_tasks import suites
+from waggle_tasks.experiments import (
+  launch,
+  provenance,
+  suite_runner,
+  variants,
+)
+from waggle_tasks.protocol import checks
 
 _SUITE = flags.DEFINE_string(
   'suite', 'standard', f'One of {", ".join(suites.SUITES)}.'
@@ -31,63 +36,6 @@ _OUTPUT = flags.DEFINE_string(
 )
 
 
-@dataclasses.dataclass(frozen=True)
-class Variant:
-  """One choice moved.
-
-  Attributes:
-    label: What was moved, for the table.
-    changes: Fields of `Scenario` and their new values.
-    receiver: The receiver.
-  """
-
-  label: str
-  changes: dict[str, object] = dataclasses.field(default_factory=dict)
-  receiver: str = 'klt'
-
-
-def _codebook(**sizes: float) -> dict[str, object]:
-  return {'codebook': gestures.v_codebook(**sizes)}
-
-
-def _look(**choices: object) -> dict[str, object]:
-  return {'appearance': appearance.Appearance(**choices)}
-
-
-def _klt(change: str) -> Variant:
-  return Variant(change, {}, f'klt:{change}')
-
-
-VARIANTS = {
-  'base': Variant('as chosen'),
-  'half-width-low': Variant('V 0.270 m', _codebook(half_width_m=0.27)),
-  'half-width-high': Variant('V 0.300 m', _codebook(half_width_m=0.3)),
-  'start-low': Variant('START 0.58 m', _codebook(start_height_m=0.58)),
-  'start-high': Variant('START 0.66 m', _codebook(start_height_m=0.66)),
-  'gesture-short': Variant('gesture 6.5 s', _codebook(duration_s=6.5)),
-  'gesture-long': Variant('gesture 8.5 s', _codebook(duration_s=8.5)),
-  'corner-quality-low': _klt('corner_quality=0.03'),
-  'corner-quality-high': _klt('corner_quality=0.1'),
-  'corners-few': _klt('max_corners=25'),
-  'corners-many': _klt('max_corners=60'),
-  'check-strict': _klt('forward_backward_px=0.5'),
-  'check-loose': _klt('forward_backward_px=2.0'),
-  'floor-plain': Variant('plain floor', _look(floor='plain')),
-  'dim': Variant('light 0.7', _look(brightness=0.7)),
-  'bright': Variant('light 1.3', _look(brightness=1.3)),
-  'spacing-low': Variant('line spacing 0.5 m', {'spacing_m': 0.5}),
-  'spacing-high': Variant('line spacing 0.7 m', {'spacing_m': 0.7}),
-  'eye-back': Variant('eye at the centre', {'eye_offset_m': 0.0}),
-  'eye-ahead': Variant('eye 0.06 m ahead', {'eye_offset_m': 0.06}),
-  **{
-    f'jitter-{seed}': Variant(
-      f'j = 0.01 m, seed {seed}', {'jitter_m': 0.01, 'seed': seed}
-    )
-    for seed in range(10)
-  },
-}  # fmt: skip
-
-
 def main(argv: Sequence[str]) -> int:
   """Runs the variants and prints which cases change; 0 when it is done."""
   del argv
@@ -96,11 +44,11 @@ def main(argv: Sequence[str]) -> int:
   for wanted in _CASE.value:
     checks.choice('case', wanted, known, suites.SuiteError)
   for wanted in _VARIANT.value:
-    checks.choice('variant', wanted, [*VARIANTS], suites.SuiteError)
+    checks.choice('variant', wanted, [*variants.VARIANTS], suites.SuiteError)
   cases = [c for c in cases if not _CASE.value or c.name in _CASE.value]
   workers = launch.worker_count(_WORKERS)
 
-  def run(name: str, variant: Variant) -> list[dict[str, object]]:
+  def run(name: str, variant: variants.Variant) -> list[dict[str, object]]:
     print(f'{name}: {variant.label}', flush=True)
     folder = pathlib.Path(_OUTPUT.value) / name
     command = provenance.command_line(
@@ -114,40 +62,8 @@ def main(argv: Sequence[str]) -> int:
     ]
     return suite_runner.run(moved, variant.receiver, folder, workers, command)
 
-  print(report(run, _VARIANT.value or [*VARIANTS]))
+  print(variants.report(run, _VARIANT.value or [*variants.VARIANTS]))
   return 0
-
-
-def report(
-  run: Callable[[str, Variant], list[dict[str, object]]], names: Sequence[str]
-) -> str:
-  """Runs variants and puts what changed into a table.
-
-  Args:
-    run: Runs a variant and returns the rows of its cases.
-    names: Keys of `VARIANTS`.
-  """
-  rows = []
-  for name in names:
-    results = run(name, VARIANTS[name])
-    changed = [
-      f'{row["case"]} {row["correct"]}/{row["observers"]}'
-      f' not {row["published"]["correct"]}/{row["observers"]}'
-      for row in results
-      if (row['correct'], row['passed'])
-      != (row['published']['correct'], row['published']['passed'])
-    ]
-    correct = sum(row['correct'] for row in results)
-    rows.append(
-      (
-        VARIANTS[name].label,
-        f'{correct}/{sum(row["observers"] for row in results)}',
-        f'{sum(row["passed"] for row in results)}/{len(results)}',
-        '; '.join(changed) or 'none',
-      )
-    )
-  header = ('choice moved', 'messages', 'groups', 'rows unlike the paper')
-  return table.render(header, rows)
 
 
 if __name__ == '__main__':

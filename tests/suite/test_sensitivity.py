@@ -10,15 +10,15 @@ import pytest
 
 from waggle_tasks import suites
 from waggle_tasks.agents import receivers
-from waggle_tasks.experiments import sensitivity
+from waggle_tasks.experiments import variants
 
 Row = dict[str, object]
 CASES = suites.find('paper')
 
 
-@pytest.mark.parametrize('name', sensitivity.VARIANTS)
+@pytest.mark.parametrize('name', variants.VARIANTS)
 def test_every_case_can_be_flown_with_every_choice(name: str) -> None:
-  variant = sensitivity.VARIANTS[name]
+  variant = variants.VARIANTS[name]
   for case in CASES:
     moved = dataclasses.replace(case.scene, **variant.changes)
     receivers.make(variant.receiver, moved.codebook)
@@ -27,7 +27,7 @@ def test_every_case_can_be_flown_with_every_choice(name: str) -> None:
 def test_every_variant_moves_something_else() -> None:
   (case,) = [case for case in CASES if case.name == 'default']
   seen = []
-  for variant in sensitivity.VARIANTS.values():
+  for variant in variants.VARIANTS.values():
     moved = dataclasses.replace(case.scene, **variant.changes)
     seen.append((moved, variant.receiver))
   assert seen[0] == (case.scene, 'klt')
@@ -51,7 +51,7 @@ def test_open_choices_are_moved_both_ways(field: str) -> None:
 
   moved = [
     sizes(variant.changes[field])
-    for variant in sensitivity.VARIANTS.values()
+    for variant in variants.VARIANTS.values()
     if field in variant.changes
   ]
   chosen = sizes(getattr(default, field))
@@ -68,7 +68,7 @@ def row(case: suites.Case, correct: int, passed: bool) -> Row:
 
 
 def test_the_report_names_the_rows_that_changed() -> None:
-  def run(name: str, variant: sensitivity.Variant) -> list[Row]:
+  def run(name: str, variant: variants.Variant) -> list[Row]:
     del variant
     rows = [
       row(each, each.published.correct, each.published.passed)
@@ -79,7 +79,7 @@ def test_the_report_names_the_rows_that_changed() -> None:
       rows[9] |= {'correct': 3, 'passed': True}  # distance-1-0
     return rows
 
-  head, _, base, dim = sensitivity.report(run, ['base', 'dim']).splitlines()
+  head, _, base, dim = variants.report(run, ['base', 'dim']).splitlines()
   assert re.split(r' {2,}', head.strip())[:3] == [
     'choice moved', 'messages', 'groups',
   ]  # fmt: skip
