@@ -58,6 +58,7 @@ setuptools.setup(
     'pyopengl>=3.1.4',
     'scipy>=1.13',
     'tqdm>=4.60',
+    'xxhash>=3',
   ],
   extras_require={'video': VIDEO, 'test': TEST, 'dev': DEV},
   entry_points={

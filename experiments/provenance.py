@@ -15,7 +15,7 @@ from waggle_tasks import agents, arenas, entities, experiments
 
 _DISTRIBUTIONS = (
   'absl-py', 'dm-control', 'dm-env', 'mujoco', 'numpy',
-  'opencv-python-headless', 'scipy', 'tqdm',
+  'opencv-python-headless', 'scipy', 'tqdm', 'xxhash',
 )  # fmt: skip
 
 

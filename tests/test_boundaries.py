@@ -39,7 +39,7 @@ ROOMS = {
   ),
   'arenas': Room('arenas', frozenset({'protocol'}), SIMULATOR | {'numpy'}),
   'agents': Room(
-    'agents', frozenset({'protocol'}), frozenset({'numpy', 'cv2'})
+    'agents', frozenset({'protocol'}), frozenset({'numpy', 'cv2', 'xxhash'})
   ),
   'tasks': Room('waggle_tasks/tasks', PARTS, SIMULATOR | {'numpy'}),
   '': Room('waggle_tasks', PARTS | {'tasks'}, SIMULATOR | {'numpy'}, '*.py'),
