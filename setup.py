@@ -9,7 +9,12 @@ HERE = pathlib.Path(__file__).parent
 FOLDERS = ('entities', 'arenas', 'agents', 'experiments')
 
 VIDEO = ('av>=14',)
-TEST = ('pytest>=8', 'pytest-xdist>=3', 'hypothesis>=6', 'setuptools>=77')
+CLUSTER = ('distributed>=2025.1',)
+ANALYSIS = ('matplotlib>=3.9',)
+TEST = (
+  'pytest>=8', 'pytest-xdist>=3', 'hypothesis>=6', 'setuptools>=77', *CLUSTER,
+  *ANALYSIS,
+)  # fmt: skip
 DEV = (*TEST, *VIDEO, 'ruff>=0.14', 'build>=1')
 
 
@@ -60,7 +65,13 @@ setuptools.setup(
     'tqdm>=4.60',
     'xxhash>=3',
   ],
-  extras_require={'video': VIDEO, 'test': TEST, 'dev': DEV},
+  extras_require={
+    'video': VIDEO,
+    'cluster': CLUSTER,
+    'analysis': ANALYSIS,
+    'test': TEST,
+    'dev': DEV,
+  },
   entry_points={
     'console_scripts': ['waggle = waggle_tasks.experiments.main:main']
   },

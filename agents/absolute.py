@@ -10,6 +10,7 @@ from waggle_tasks.agents import config as config_lib
 from waggle_tasks.agents import difference, hover, klt
 from waggle_tasks.agents import ghost as ghost_lib
 
+_SWAYING = 2  # Over how many times as many images speed is then measured.
 _REPAIRS = 25  # Images that the background behind the hover is made from.
 # A target that is sought in the whole picture must be this much of itself.
 _MIN_SHARE, _MAX_SHARE = 0.3, 3.0
@@ -57,7 +58,7 @@ class AbsoluteTracker:
       self.ghost = departure.ghost
       self.anchor_px = departure.ghost.anchor_px
       self._follower = Follower(self._config, departure)
-      return [self._follower.step(grey, at) for at, grey in departure.greys]
+      return [self._follower.follow(grey, at) for at, grey in departure.greys]
     # Somewhere in the middle: all that is known before it moves.
     middle_px = np.array([image.shape[1], image.shape[0]]) / 2
     visible = self._hover.visible
@@ -79,6 +80,7 @@ class Follower:
         where the target was.
     """
     self._config = config
+    self._alignment = departure.alignment
     self._detector = departure.detector
     self._background = departure.background
     self._ghost = departure.ghost
@@ -86,10 +88,13 @@ class Follower:
     self._home = slice(top, bottom), slice(left, right)
     _, last = departure.greys[-1]
     self._behind = last[self._home].astype(np.float32)
-    self._background[self._home] = last[self._home]
+    self._background.grey[self._home] = last[self._home]
+    self._background.loosen(departure.slack_px)
     self._repairs = 1
     self._centre_px = departure.ghost.anchor_px
     frames = config.speed_frames
+    if departure.slack_px:
+      frames *= _SWAYING
     if self._detector.noise > config.speed_noise:
       frames = round(frames * self._detector.noise / config.speed_noise)
     self._recent: deque[tuple[float, float, float]] = deque(maxlen=frames)
@@ -100,7 +105,16 @@ class Follower:
     return max(time_s - self._seen_s, 0.0)
 
   def step(self, image: np.ndarray, time_s: float) -> klt.Track:
-    """Takes an image, (H, W, 3) uint8 RGB or (H, W) uint8 grey."""
+    """Takes an image, (H, W, 3) uint8 RGB."""
+    aligned = self._alignment.step(image)
+    if aligned is None:
+      return self._lose(time_s, 0.0, False)
+    if self._alignment.moving and self._background.slack is None:
+      self._background.loosen(self._config.slack_px)
+    return self.follow(aligned, time_s)
+
+  def follow(self, image: np.ndarray, time_s: float) -> klt.Track:
+    """Takes an aligned image, (H, W, 3) uint8 RGB or (H, W) uint8 grey."""
     self._size = image.shape[1], image.shape[0]
     gate, config = self._gate(), self._config
     weights = self._weights(image, gate, config.box_sigmas)
@@ -112,11 +126,7 @@ class Follower:
     if not config.lost_share <= share <= config.most_share:
       found = None if outside else self._search(image)
       if found is None:
-        self._recent.clear()
-        quality = min(share, 1.0)
-        return klt.Track(
-          time_s, self._centre_px, 0.0, 0, quality, False, outside
-        )
+        return self._lose(time_s, min(share, 1.0), outside)
       share, centre_px = found
     self._repair(image, gate)
     self._centre_px, self._seen_s = centre_px, time_s
@@ -125,6 +135,10 @@ class Follower:
     return klt.Track(
       time_s, centre_px, _speed(self._recent), support, min(share, 1.0), True
     )
+
+  def _lose(self, time_s: float, quality: float, outside: bool) -> klt.Track:
+    self._recent.clear()
+    return klt.Track(time_s, self._centre_px, 0.0, 0, quality, False, outside)
 
   def _gate(self) -> tuple[slice, slice]:
     """The square in which the target must be."""
@@ -170,7 +184,7 @@ class Follower:
     if self._detector.noisy and self._repairs < _REPAIRS and apart:
       self._behind += difference.grey(image, self._home)
       self._repairs += 1
-      self._background[self._home] = np.rint(self._behind / self._repairs)
+      self._background.grey[self._home] = np.rint(self._behind / self._repairs)
 
 
 def _speed(recent: deque[tuple[float, float, float]]) -> float:

@@ -5,7 +5,7 @@ import math
 from typing import TypeVar
 
 from waggle_tasks import errors
-from waggle_tasks.protocol import checks
+from waggle_tasks.protocol import checks, frame
 
 _Group = TypeVar('_Group')
 _SMALLEST_PX = 5  # A smaller window holds no corner.
@@ -20,9 +20,13 @@ class _Numbers:
 
   def __post_init__(self) -> None:
     for field in dataclasses.fields(self):
+      value = getattr(self, field.name)
+      if field.type is bool:
+        checks.switch(field.name, value, ReceiverError)
+        continue
       low, high = _LIMITS.get(field.name, (0, 1e6))
       check = checks.integer if field.type is int else checks.number
-      check(field.name, getattr(self, field.name), low, high, ReceiverError)
+      check(field.name, value, low, high, ReceiverError)
 
 
 # Smallest and largest value that the tracker can work with.
@@ -49,7 +53,10 @@ class Tracking(_Numbers):
     corner_distance_px: Smallest distance between two new features.
     window_px: Side of the Lucas-Kanade window.
     levels: Pyramid levels above the image.
-    forward_backward_px: Largest error of tracking there and back.
+    forward_backward: Whether features are also tracked back, and dropped where
+      they do not return to where they were.
+    forward_backward_px: Largest error of tracking there and back, and largest
+      difference of a feature's way from that of all.
     min_support: Fewest surviving features of a valid frame.
     min_quality: Smallest share of surviving features (paper, section 'Visual
       null confirmation': tracking quality at least 0.2).
@@ -64,6 +71,7 @@ class Tracking(_Numbers):
   corner_distance_px: float = 3.0
   window_px: int = 15
   levels: int = 2
+  forward_backward: bool = True
   forward_backward_px: float = 1.0
   min_support: int = 5
   min_quality: float = 0.2
@@ -86,6 +94,10 @@ class Differencing:
     box_px: ...of this side...
     box_sigmas: ...so many standard deviations above that of noise alone.
     watch_sigmas: The same while nothing but noise may be there.
+    slack_px: How far pictures of a camera that sways may be out of place once
+      they are aligned...
+    most_slack_px: ...and how far a target may sway that is taken to be at
+      rest.
     speed_frames: Over how many images speed is measured...
     speed_noise: ...in noise up to this; over more of them in more.
     gate_widths: Half the side of the square around the target in which it is
@@ -106,6 +118,8 @@ class Differencing:
   box_px: int = 5
   box_sigmas: float = 4.0
   watch_sigmas: float = 8.0
+  slack_px: float = 1.0
+  most_slack_px: float = 4.0
   speed_frames: int = 10
   speed_noise: float = 8.0
   gate_widths: float = 0.9
@@ -160,6 +174,10 @@ class Excursion:
   coast_frames: int = 5
   outside_s: float = 5.0
 
+  def away_px(self, width_px: float) -> float:
+    """How far from rest a target of this apparent width is away."""
+    return max(self.radius_px, self.radius_widths * width_px)
+
 
 @dataclasses.dataclass(frozen=True)
 class Views:
@@ -207,6 +225,12 @@ class Recognition(_Numbers):
   min_span_px: float = 28.0
   min_span_widths: float = 0.3
 
+  def least_span_px(self, width_px: float | None) -> float:
+    """The smallest span of a target of this apparent width, or of unknown."""
+    if width_px is None:
+      return self.min_span_px
+    return self.min_span_widths * width_px
+
 
 @dataclasses.dataclass(frozen=True)
 class Stillness(_Numbers):
@@ -234,6 +258,7 @@ class Config:
     motion: ...and how its track is cut, which goes with it.
     recognition: When a path is a symbol.
     stillness: When stillness is a null.
+    framing: Which nulls a message must have.
     views: Where gestures may be seen from; None for the front alone.
   """
 
@@ -241,9 +266,14 @@ class Config:
   motion: Motion | Excursion = Motion()
   recognition: Recognition = Recognition()
   stillness: Stillness = Stillness()
+  framing: frame.Rules = frame.Rules()
   views: Views | None = None
 
 
+# Trackers and templates are chosen apart from each other.
+KLT = Config()
+KLT_BANK = Config(views=Views())
+ABSOLUTE = Config(Differencing(), Excursion())
 VIEW_BANK = Config(Differencing(), Excursion(), views=Views())
 
 

@@ -3,10 +3,13 @@
 An absolute position in every image: nothing adds up, so nothing drifts.
 """
 
+import math
+
 import cv2
 import numpy as np
 
 from waggle_tasks.agents import config as config_lib
+from waggle_tasks.agents import noise as noise_lib
 
 _MERGE_PX = 7  # Differences as near as this belong together.
 Box = tuple[slice, slice]
@@ -19,26 +22,76 @@ def grey(image: np.ndarray, box: Box = WHOLE) -> np.ndarray:
   return part if part.ndim == 2 else cv2.cvtColor(part, cv2.COLOR_RGB2GRAY)
 
 
+def slopes(grey: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+  """Grey levels per pixel along x and y, (H, W) float32 each."""
+  return tuple(
+    cv2.Sobel(grey, cv2.CV_32F, *axis, ksize=3, scale=1 / 8)
+    for axis in ((1, 0), (0, 1))
+  )
+
+
+class Background:
+  """What is behind a target.
+
+  Attributes:
+    grey: (H, W) uint8.
+    variance: (H, W) float32, that of noise; None without noise.
+    slack: (H, W) uint8, the difference that a picture may show which is not
+      quite in its place; None where pictures are.
+  """
+
+  def __init__(
+    self,
+    grey: np.ndarray,
+    variance: np.ndarray | None = None,
+    slack: np.ndarray | None = None,
+  ) -> None:
+    self.grey = grey
+    self.variance = variance
+    self.slack = slack
+
+  def __getitem__(self, box: Box) -> 'Background':
+    """A part of it, which shares its memory."""
+    parts = [
+      None if each is None else each[box]
+      for each in (self.variance, self.slack)
+    ]
+    return Background(self.grey[box], *parts)
+
+  def loosen(self, slack_px: float) -> None:
+    """Allows pictures to be out of place by so many pixels."""
+    if slack_px > 0:
+      near = np.ones((2 * math.ceil(slack_px) + 1,) * 2, np.uint8)
+      self.slack = cv2.morphologyEx(self.grey, cv2.MORPH_GRADIENT, near)
+
+
 class Detector:
   """Weighs pixels by how surely they differ from a background."""
 
-  def __init__(self, config: config_lib.Differencing, noise: float) -> None:
+  def __init__(
+    self, config: config_lib.Differencing, noise: noise_lib.Noise
+  ) -> None:
     """Makes a detector.
 
     Args:
       config: Its numbers.
-      noise: Standard deviation of the images' noise in grey levels.
+      noise: That of the images.
     """
     self._config = config
-    self.noise = noise
-    self.noisy = noise > config.noise_levels
+    self._noise = noise
+    self.noise = noise.overall
+    self.noisy = noise.overall > config.noise_levels
     # How much wider than a target its weights are.
     self.blur_px = config.box_px - 1 if self.noisy else 0
+
+  def background(self, grey: np.ndarray) -> Background:
+    """What is behind a target, of a picture (H, W) uint8 without noise."""
+    return Background(grey, self._noise.variance(grey) if self.noisy else None)
 
   def weights(
     self,
     grey: np.ndarray,  # (h, w) uint8
-    background: np.ndarray,  # (h, w) uint8
+    background: Background,  # (h, w)
     sigmas: float,
     spread: float = 1.0,
   ) -> np.ndarray:
@@ -52,25 +105,23 @@ class Detector:
     """
     config = self._config
     if not self.noisy:
-      change = cv2.absdiff(grey, background)
+      change = cv2.absdiff(grey, background.grey)
+      if background.slack is not None:
+        change = cv2.subtract(change, background.slack)
       return cv2.subtract(change, config.min_levels)
-    change = cv2.subtract(grey, background, dtype=cv2.CV_32F)
+    change = cv2.subtract(grey, background.grey, dtype=cv2.CV_32F)
+    if background.slack is not None:
+      slack = background.slack.astype(np.float32)
+      change = cv2.max(cv2.subtract(cv2.absdiff(change, 0.0), slack), 0.0)
     side = config.box_px
     energy = cv2.boxFilter(
       cv2.multiply(change, change), -1, (side, side),
       borderType=cv2.BORDER_REFLECT,
     )  # fmt: skip
     # Noise energy in a box has a standard deviation of sqrt(2) / side.
-    floor = spread * self.noise**2 * (1 + sigmas * 2**0.5 / side)
+    factor = spread * (1 + sigmas * 2**0.5 / side)
+    floor = cv2.multiply(background.variance, factor)
     return cv2.max(cv2.subtract(energy, floor), 0.0)
-
-
-def noise_between(one: np.ndarray, other: np.ndarray) -> float:
-  """Noise of two images of one scene, (h, w) uint8 each, in grey levels."""
-  change = np.abs(one.astype(np.int16) - other)
-  # The median tells noise from what moves, but only in whole grey levels.
-  noise = change[change <= 6 * np.median(change) + 1].astype(float)
-  return float(np.sqrt(np.mean(noise**2) / 2))
 
 
 def centroid(

@@ -33,7 +33,7 @@ class ExcursionSegmenter:
     self._config = config
     self._home_px = home_px
     self._width_px = width_px
-    self._radius_px = max(config.radius_px, config.radius_widths * width_px)
+    self._radius_px = config.away_px(width_px)
     self._begin()
 
   def _begin(self) -> None:

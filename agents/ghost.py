@@ -18,6 +18,7 @@ _MAX_CHANGE = 0.2  # Share of a ghost that may change in them.
 _MIN_BALANCE = 0.25
 _MIN_SHARE = 0.1  # Of the largest difference; less is a fragment.
 _MARGIN_PX = 3
+_MIN_WIDTH_PX = 5
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -45,13 +46,16 @@ class Separation:
   """
 
   def __init__(
-    self, detector: difference.Detector, background: np.ndarray, sigmas: float
+    self,
+    detector: difference.Detector,
+    background: difference.Background,
+    sigmas: float,
   ) -> None:
     """Begins with the first motion.
 
     Args:
       detector: Weighs differences.
-      background: (H, W) uint8 with the target in it.
+      background: (H, W) with the target in it.
       sigmas: How far above noise a difference must be.
     """
     self._detector = detector
@@ -64,7 +68,9 @@ class Separation:
     self.greys.append((time_s, grey))
     if len(self.greys) <= _LAG:
       return None
-    _, before = self.greys[-1 - _LAG]
+    known = self._background
+    _, grey_before = self.greys[-1 - _LAG]
+    before = difference.Background(grey_before, known.variance, known.slack)
     weigh, sigmas = self._detector.weights, self._sigmas
     blobs = difference.Blobs(weigh(grey, self._background, sigmas))
     totals = blobs.totals
@@ -74,7 +80,8 @@ class Separation:
     rest, motion = totals[still].sum(), totals[large & ~still].sum()
     if min(rest, motion) <= _MIN_BALANCE * max(rest, motion):
       return None
-    return self._ghost(blobs.only(np.flatnonzero(still)))
+    found = self._ghost(blobs.only(np.flatnonzero(still)))
+    return found if found.width_px >= _MIN_WIDTH_PX else None
 
   def _ghost(self, weights: np.ndarray) -> Ghost:
     total, anchor_px = difference.centroid(weights, (0, 0))

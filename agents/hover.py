@@ -5,10 +5,13 @@ import dataclasses
 import cv2
 import numpy as np
 
+from waggle_tasks.agents import alignment, difference, ghost
 from waggle_tasks.agents import config as config_lib
-from waggle_tasks.agents import difference, ghost
+from waggle_tasks.agents import noise as noise_lib
 
 _CONTRAST_PX = 96  # Side of the square in which there must be something.
+_SOFT_PX = 5  # Side over which a picture is averaged to be without noise.
+_REST_PX = 128  # Side of the square in which a target rests.
 _MIN_PIXELS = 4  # Fewest pixels of a motion.
 
 
@@ -17,14 +20,18 @@ class Departure:
   """A target that has left the place where it hovered.
 
   Attributes:
+    alignment: Brings pictures to the background.
     detector: Weighs differences.
-    background: (H, W) uint8 without the target.
+    background: (H, W) with the target in it.
+    slack_px: How far pictures may be out of place.
     ghost: Where the target was.
     greys: Times and images, (H, W) uint8, since its motion began.
   """
 
+  alignment: alignment.Alignment
   detector: difference.Detector
-  background: np.ndarray
+  background: difference.Background
+  slack_px: float
   ghost: ghost.Ghost
   greys: list[tuple[float, np.ndarray]]
 
@@ -38,48 +45,81 @@ class Hover:
 
   def __init__(self, config: config_lib.Differencing) -> None:
     self._config = config
+    self._slack_px = 0.0
     self._forget()
 
   def _forget(self) -> None:
-    self._first: np.ndarray | None = None
-    self._background: np.ndarray | None = None
+    self._alignment: alignment.Alignment | None = None
+    self._background: difference.Background | None = None
     self._separation: ghost.Separation | None = None
     self.visible = False
 
   def step(self, image: np.ndarray, time_s: float) -> Departure | None:
-    """Takes an image, (H, W, 3) uint8, later than the last one."""
+    """Takes an image, (H, W, 3) uint8 RGB, later than the last one."""
     self.visible = False
+    if self._alignment is None:
+      self._begin(image, time_s)
+      return None
+    aligned = self._alignment.step(image)
+    if aligned is None:
+      self._forget()
+      return None
+    if self._alignment.moving:
+      self._loosen(self._config.slack_px)
     if self._separation is not None:
-      return self._separate(difference.grey(image), time_s)
+      return self._separate(difference.grey(aligned), time_s)
     if self._background is not None:
-      return self._watch(image, time_s)
-    self._learn(difference.grey(image), time_s)
+      return self._watch(aligned, time_s)
+    if not self._learn(difference.grey(aligned), time_s):
+      self._sway()
+      self._begin(image, time_s)
     return None
 
-  def _learn(self, grey: np.ndarray, time_s: float) -> None:
-    """Adds an image to the background, or begins a new one with it."""
-    if self._first is None:
-      self._begin(grey, time_s)
-      return
+  def _begin(self, image: np.ndarray, time_s: float) -> None:
+    """Learns anew, with this image as the first."""
+    self._alignment = alignment.Alignment(image)
+    grey = difference.grey(image)
+    self._first = difference.Background(grey)
+    self._first.loosen(self._slack_px)
+    self._sum = grey.astype(np.float32)
+    self._count, self._since_s = 1, time_s
+    smooth = cv2.blur(grey[_middle(grey, _CONTRAST_PX)], (5, 5))
+    self._contrast = bool(np.ptp(smooth) >= self._config.min_contrast)
+
+  def _loosen(self, slack_px: float) -> None:
+    """Allows everything to be out of place by so much."""
+    if slack_px > self._slack_px:
+      self._slack_px = slack_px
+      for each in filter(None, (self._first, self._background)):
+        each.loosen(slack_px)
+
+  def _sway(self) -> None:
+    """Allows more of what does not come to rest."""
+    config = self._config
+    self._slack_px = min(
+      max(2 * self._slack_px, config.slack_px), config.most_slack_px
+    )
+
+  def _learn(self, grey: np.ndarray, time_s: float) -> bool:
+    """Adds an image to the background, unless something has moved."""
     middle = _middle(grey, self._config.watch_px)
     if self._count == 1:
-      noise = difference.noise_between(grey[middle], self._first[middle])
+      noise = noise_lib.Noise(self._first.grey, grey)
       self._detector = difference.Detector(self._config, noise)
+      soft = cv2.blur(self._first.grey, (_SOFT_PX, _SOFT_PX))
+      self._first.variance = self._detector.background(soft).variance
     if self._moved(grey[middle], self._first[middle], 2.0):
-      self._begin(grey, time_s)
-      return
+      return False
     cv2.accumulate(grey, self._sum)
     self._count += 1
     self.visible = self._contrast
     if config_lib.lasted(self._since_s, time_s, self._config.learn_s):
-      self._background = np.rint(self._sum / self._count).astype(np.uint8)
+      mean = np.rint(self._sum / self._count).astype(np.uint8)
+      self._background = self._detector.background(mean)
+      self._background.loosen(self._slack_px)
+      self._alignment = alignment.Alignment(mean)
       self._last = None
-
-  def _begin(self, grey: np.ndarray, time_s: float) -> None:
-    self._first, self._sum = grey, grey.astype(np.float32)
-    self._count, self._since_s = 1, time_s
-    smooth = cv2.blur(grey[_middle(grey, _CONTRAST_PX)], (5, 5))
-    self._contrast = bool(np.ptp(smooth) >= self._config.min_contrast)
+    return True
 
   def _watch(self, image: np.ndarray, time_s: float) -> Departure | None:
     middle = _middle(image, self._config.watch_px)
@@ -89,26 +129,39 @@ class Hover:
       if self._moved(grey, self._background[middle], 1.0):
         self._since_s = time_s
         self._separation = ghost.Separation(
-          self._detector, self._background, self._config.watch_sigmas
+          self._detector, self._strict(), self._config.watch_sigmas
         )
         return self._separate(difference.grey(image), time_s)
     self.visible = self._contrast
     return None
 
+  def _strict(self) -> difference.Background:
+    """The background without slack, which would hide a ghost, in the middle."""
+    known = self._background
+    if (slack := known.slack) is not None:
+      slack = slack.copy()
+      slack[_middle(slack, _REST_PX)] = 0
+    return difference.Background(known.grey, known.variance, slack)
+
   def _moved(
-    self, grey: np.ndarray, background: np.ndarray, spread: float
+    self, grey: np.ndarray, background: difference.Background, spread: float
   ) -> bool:
     sigmas = self._config.watch_sigmas
     weights = self._detector.weights(grey, background, sigmas, spread)
-    return cv2.countNonZero(weights) >= _MIN_PIXELS
+    # In noise every difference is as large as the box that it is summed in.
+    box_pixels = self._config.box_px**2 // 2
+    least = box_pixels if self._detector.noisy else _MIN_PIXELS
+    return cv2.countNonZero(weights) >= least
 
   def _separate(self, grey: np.ndarray, time_s: float) -> Departure | None:
     found = self._separation.step(grey, time_s)
     if found is not None:
       return Departure(
-        self._detector, self._background, found, self._separation.greys
-      )
+        self._alignment, self._detector, self._background, self._slack_px,
+        found, self._separation.greys,
+      )  # fmt: skip
     if config_lib.lasted(self._since_s, time_s, self._config.separate_s):
+      self._sway()
       self._forget()
     elif not self._moved(grey, self._background, 1.0):
       self._separation = None

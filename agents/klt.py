@@ -40,7 +40,8 @@ class Track:
     """Why the frame is not valid."""
     if self.support < config.min_support:
       return f'support {self.support} < {config.min_support}'
-    return f'forward-backward ratio {self.quality:.2f} < {config.min_quality}'
+    checked = 'forward-backward' if config.forward_backward else 'support'
+    return f'{checked} ratio {self.quality:.2f} < {config.min_quality}'
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -153,26 +154,14 @@ class KltTracker:
       return np.zeros(2), len(self._points)  # Not a pixel has changed.
     if before.grey.shape != after.grey.shape:
       return np.zeros(2), 0  # It moved further than a patch reaches.
-    flow = {
-      'winSize': (config.window_px, config.window_px),
-      'maxLevel': config.levels,
-    }
     start = (self._points - before.origin_px)[:, None]
-    there, found, _ = cv2.calcOpticalFlowPyrLK(
-      before.grey, after.grey, start, None, **flow
-    )
-    back, returned, _ = cv2.calcOpticalFlowPyrLK(
-      after.grey, before.grey, there, None, **flow
-    )
-    error_px = np.hypot(*(back - start)[:, 0].T)
+    there, kept = self._flow(before, after, start)
+    if config.forward_backward:
+      back, returned = self._flow(after, before, there)
+      error_px = np.hypot(*(back - start)[:, 0].T)
+      kept &= returned & (error_px < config.forward_backward_px)
     there = there[:, 0] + before.origin_px
-    kept = (
-      (found[:, 0] == 1)
-      & (returned[:, 0] == 1)
-      & (error_px < config.forward_backward_px)
-      & (there >= 0).all(1)
-      & (there < patch.image_size).all(1)
-    )
+    kept &= (there >= 0).all(1) & (there < patch.image_size).all(1)
     if not kept.any():
       return np.zeros(2), 0
     shifts = (there - self._points)[kept]
@@ -180,6 +169,17 @@ class KltTracker:
     agree = np.abs(shifts - median).max(1) < config.forward_backward_px
     self._points = there[kept][agree]
     return median.astype(float), int(agree.sum())
+
+  def _flow(
+    self, before: _Patch, after: _Patch, points: np.ndarray
+  ) -> tuple[np.ndarray, np.ndarray]:
+    """Where points (N, 1, 2) go, and (N,) whether they were found there."""
+    side_px, levels = self._config.window_px, self._config.levels
+    there, found, _ = cv2.calcOpticalFlowPyrLK(
+      before.grey, after.grey, points, None,
+      winSize=(side_px, side_px), maxLevel=levels,
+    )  # fmt: skip
+    return there, found[:, 0] == 1
 
   def _replenish(self, patch: _Patch) -> None:
     """Finds new features around the target."""

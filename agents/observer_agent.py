@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 import dataclasses
 import enum
+import math
 
 import numpy as np
 
@@ -60,9 +61,14 @@ class ObserverAgent:
     self._chain = provenance.Chain()
     self._command: navigator_lib.Command | None = None
     self.events: list[receiver.Event | Navigation] = []
+    self._time_s = -math.inf
+    self._action: np.ndarray | None = None
 
   def step(self, observation: Mapping[str, np.ndarray]) -> np.ndarray:
     """Takes an observation and returns an action.
+
+    One that is not newer than the last holds an image that was read already:
+    it is passed over, and the last action stands.
 
     Args:
       observation: `camera` (H, W, 3) uint8, `time_s` () and `position_m`
@@ -72,13 +78,17 @@ class ObserverAgent:
       (13,) see `reference.Reference`.
     """
     time_s = float(observation['time_s'])
+    if time_s <= self._time_s:
+      return self._action
+    self._time_s = time_s
     position_m = np.asarray(observation['position_m'])
     if self._navigator.target_m is None:  # Navigating, it reads no more.
       self._read(observation['camera'], position_m, time_s)
     wanted = self._navigator.step(position_m, time_s)
     if self._navigator.arrival_s == time_s:
       self._note(Deed.ARRIVAL, time_s)
-    return wanted.to_array()
+    self._action = wanted.to_array()
+    return self._action
 
   def _read(
     self, image: np.ndarray, position_m: np.ndarray, time_s: float

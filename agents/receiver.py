@@ -85,7 +85,7 @@ class StagedReceiver:
     self._stillness = stillness.StillnessDetector(
       config.stillness, config.tracking.max_gap_s
     )
-    self._parser = frame.Parser()
+    self._parser = frame.Parser(rules=config.framing)
     self._where: tuple[float | None, float | None] = None, None
     self.track: klt.Track | None = None
     self.segment: segmenter.Segment | None = None
@@ -134,7 +134,19 @@ class StagedReceiver:
 class KltReceiver(StagedReceiver):
   """The paper's receiver."""
 
-  DEFAULT = config_lib.Config()
+  DEFAULT = config_lib.KLT
+
+
+class KltBankReceiver(StagedReceiver):
+  """The paper's tracker, and gestures as they look from every side."""
+
+  DEFAULT = config_lib.KLT_BANK
+
+
+class AbsoluteReceiver(StagedReceiver):
+  """Absolute positions, and gestures as they look from the front."""
+
+  DEFAULT = config_lib.ABSOLUTE
 
 
 class ViewBankReceiver(StagedReceiver):

@@ -8,6 +8,8 @@ from waggle_tasks.protocol import checks, gestures
 
 RECEIVERS = {
   'klt': receiver.KltReceiver,
+  'klt_bank': receiver.KltBankReceiver,
+  'absolute': receiver.AbsoluteReceiver,
   'view_bank': receiver.ViewBankReceiver,
 }
 
@@ -21,32 +23,47 @@ def make(
   """Makes a receiver at the beginning of an episode.
 
   Args:
-    name: One of `RECEIVERS`, as it is ('klt') or with numbers of its
-      configuration changed ('klt:corner_quality=0.1,max_rmse=0.2').
+    name: One of `RECEIVERS`, as it is ('klt') or with parts of its
+      configuration changed ('klt:corner_quality=0.1,separators=off').
     codebook: The agreed gestures.
     zoom: Focal length of the camera over that of an observer's eye.
 
   Raises:
-    ReceiverError: if the name or a number is not known, or not a number.
+    ReceiverError: as `configured` does.
+  """
+  made, config = configured(name)
+  return made(codebook, config_lib.zoomed(config, zoom))
+
+
+def configured(
+  name: str,
+) -> tuple[type[receiver.Receiver], config_lib.Config]:
+  """The class that a name stands for and the configuration that goes with it.
+
+  Args:
+    name: See `make`.
+
+  Raises:
+    ReceiverError: if the name or what is changed is not known, or a value is
+      not of its type.
   """
   kind, _, changes = name.partition(':')
   checks.choice('receiver', kind, [*RECEIVERS], ReceiverError)
   made = RECEIVERS[kind]
-  config = config_lib.zoomed(configure(changes, made.DEFAULT), zoom)
-  return made(codebook, config)
+  return made, configure(changes, made.DEFAULT)
 
 
 def configure(
   changes: str, default: config_lib.Config = config_lib.Config()
 ) -> config_lib.Config:
-  """A configuration with changes such as 'max_rmse=0.2,...'.
+  """A configuration with changes such as 'max_rmse=0.2,separators=off'.
 
   Args:
-    changes: Names and numbers; may be empty.
+    changes: Names with numbers, or with 'on' or 'off'; may be empty.
     default: What is changed.
 
   Raises:
-    ReceiverError: if a name is not known, or a value is not a number.
+    ReceiverError: if a name is not known, or a value is not of its type.
   """
   groups = {
     f.name: group
@@ -62,11 +79,23 @@ def configure(
     name, _, text = change.partition('=')
     checks.choice('receiver number', name, [*homes], ReceiverError)
     group, kind = homes[name]
-    try:
-      value = kind(text)
-    except ValueError:
-      raise ReceiverError(
-        f'`{name}` must be of type {kind.__name__}: got {text!r}'
-      ) from None
+    value = _switch(name, text) if kind is bool else _number(name, text, kind)
     groups[group] = dataclasses.replace(groups[group], **{name: value})
   return config_lib.Config(**groups)
+
+
+_SWITCHES = {'on': True, 'off': False}
+
+
+def _switch(name: str, text: str) -> bool:
+  checks.choice(name, text, [*_SWITCHES], ReceiverError)
+  return _SWITCHES[text]
+
+
+def _number(name: str, text: str, kind: type[int] | type[float]) -> float:
+  try:
+    return kind(text)
+  except ValueError:
+    raise ReceiverError(
+      f'`{name}` must be of type {kind.__name__}: got {text!r}'
+    ) from None

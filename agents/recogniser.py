@@ -109,12 +109,12 @@ class Recogniser:
 
   def _small(self, span_px: float, width_px: float | None) -> str:
     config = self._config
-    if width_px is None:
-      limit_px, rule = config.min_span_px, f'{config.min_span_px:g} px'
-    else:
-      limit_px = config.min_span_widths * width_px
+    if span_px >= config.least_span_px(width_px):
+      return ''
+    rule = f'{config.min_span_px:g} px'
+    if width_px is not None:
       rule = f'{config.min_span_widths:g} widths of {width_px:.1f} px'
-    return f'span {span_px:.1f} px < {rule}' if span_px < limit_px else ''
+    return f'span {span_px:.1f} px < {rule}'
 
   def _reason(self, rmse: float, margin: float, closure: float) -> str:
     config = self._config

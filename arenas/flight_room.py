@@ -7,7 +7,9 @@ from dm_control import composer, mjcf
 import numpy as np
 
 from waggle_tasks import appearance
-from waggle_tasks.arenas import layouts, scenery, views
+from waggle_tasks.arenas import clutter, layouts, scenery, views
+from waggle_tasks.arenas import sun as sun_lib
+from waggle_tasks.protocol import timing
 
 # Flat floor for twenty observers in a line 0.6 m apart, or on an arc of 3 m,
 # that then fly the longest message, 0.8 m; and the wall's curve around it.
@@ -30,6 +32,10 @@ _AMBER = (0.95, 0.62, 0.10, 1.0)
 _CHALK = (0.95, 0.96, 0.97, 1.0)
 
 _AMBIENT, _HEADLIGHT = 0.68, 0.12
+# Beside a sun everything else is this much darker.
+_BESIDE_SUN = 0.5
+# What leaves a texture's colours as they are.
+_WHITE = (1.0, 1.0, 1.0, 1.0)
 # Direction and brightness; the last stands in for light off the floor.
 _LIGHTS = {
   'key': ((0.20, 0.10, -1.0), 0.38),
@@ -125,7 +131,37 @@ class FlightRoom(composer.Arena):
     self._add_drawn(f'pad_{name}', 'pad', _CHALK, (x_m, y_m, 0.003))
     self._positions_m.append(pose.position_m)
     self._views.show(self._positions_m)
+    if self._sun:
+      self._sun.add_shadow(name, frame.freejoint)
     return frame
+
+  def add_guided(self, entity: composer.Entity) -> mjcf.Element:
+    """Attaches what is moved by its own hooks, and not by forces.
+
+    Args:
+      entity: What sets `mocap_pos` and `mocap_quat` of its attachment frame.
+
+    Returns:
+      The frame.
+    """
+    frame = self.attach(entity)
+    frame.mocap = True
+    return frame
+
+  def initialize_episode(
+    self, physics: mjcf.Physics, random_state: np.random.RandomState
+  ) -> None:
+    """Begins the sun's way."""
+    if self._sun:
+      self._sun.rise(physics, random_state)
+
+  def before_step(
+    self, physics: mjcf.Physics, random_state: np.random.RandomState
+  ) -> None:
+    """Moves the sun and its shadows to the end of the control step."""
+    del random_state
+    if self._sun:
+      self._sun.shine(physics, physics.time() + timing.FRAME_S)
 
   def _set_options(self) -> None:
     root = self._mjcf_root
@@ -146,21 +182,31 @@ class FlightRoom(composer.Arena):
     root.visual.map.set_attributes(znear=0.05, zfar=30.0)
 
   def _add_room(self) -> None:
-    self._mjcf_root.worldbody.add(
+    floor = self._mjcf_root.worldbody.add(
       'geom',
       name='floor',
       type='plane',
       size=(30.0, 30.0, 30.0),  # Seen past the wall from outside the room.
       rgba=_SLATE,
     )
+    if self._look.floor == 'clutter':
+      material = clutter.add_material(self._mjcf_root, '2d')
+      floor.set_attributes(material=material, rgba=_WHITE)
     self._add_walls()
     wall = scenery.studio_wall(
       HALF_WIDTH_M, HALF_DEPTH_M, HEIGHT_M, _CURVE_M, _CORNER_M
     )
     self._add_mesh('wall', wall)
-    self._add_drawn('wall', 'wall', _SLATE)
     self._add_mesh('ceiling', scenery.ceiling(HALF_WIDTH_M, HALF_DEPTH_M))
-    self._add_drawn('ceiling', 'ceiling', _SLATE, (0.0, 0.0, HEIGHT_M))
+    high = (0.0, 0.0, HEIGHT_M)
+    seen = [
+      self._add_drawn('wall', 'wall', _SLATE),
+      self._add_drawn('ceiling', 'ceiling', _SLATE, high),
+    ]
+    if self._look.walls == 'clutter':
+      material = clutter.add_material(self._mjcf_root, 'cube')
+      for geom in seen:
+        geom.set_attributes(material=material, rgba=_WHITE)
     if self._look.floor == 'honeycomb':
       self._add_mesh('tiles', scenery.honeycomb(TILE_M, 0.016, 5))
       self._add_drawn('tiles', 'tiles', _TILE, (0.0, 0.0, 0.001))
@@ -204,9 +250,9 @@ class FlightRoom(composer.Arena):
     mesh: str,
     rgba: Sequence[float],
     position_m: Sequence[float] = (0.0, 0.0, 0.0),
-  ) -> None:
+  ) -> mjcf.Element:
     """Adds a mesh that is seen and not felt."""
-    self._mjcf_root.worldbody.add(
+    return self._mjcf_root.worldbody.add(
       'geom',
       name=name,
       type='mesh',
@@ -219,7 +265,10 @@ class FlightRoom(composer.Arena):
 
   def _add_lights(self) -> None:
     root = self._mjcf_root
-    gain = self._look.brightness
+    gain, self._sun = self._look.brightness, None
+    if self._look.sun != 'none':
+      self._sun = sun_lib.Sun(root, self._look.sun == 'moving', gain)
+      gain *= _BESIDE_SUN
     root.visual.headlight.set_attributes(
       ambient=(gain * _AMBIENT,) * 3,
       diffuse=(gain * _HEADLIGHT,) * 3,

@@ -67,18 +67,24 @@ class Arc:
     radius_m: Horizontal distance to the performer.
     half_span_rad: Angle from the middle of the arc to its end, 0 to pi; a
       single observer is in the middle.
+    bearing_rad: Where the middle is as the performer sees it, -pi to pi; at
+      zero straight ahead, positive towards +x.
   """
 
   radius_m: float = 1.3
   half_span_rad: float = math.radians(30.0)
+  bearing_rad: float = 0.0
 
   def __post_init__(self) -> None:
     _check_distance('radius_m', self.radius_m)
     checks.number('half_span_rad', self.half_span_rad, 0, math.pi, LayoutError)
+    checks.number(
+      'bearing_rad', self.bearing_rad, -math.pi, math.pi, LayoutError
+    )
 
   def poses(self, count: int) -> tuple[Pose, ...]:
     """The poses of `count` observers, see the class."""
-    angles_rad = self.half_span_rad * spread(count)
+    angles_rad = self.bearing_rad + self.half_span_rad * spread(count)
     return tuple(
       facing_performer(
         self.radius_m * math.sin(angle), -self.radius_m * math.cos(angle)

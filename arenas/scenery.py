@@ -121,6 +121,31 @@ def ring(inner_m: float, outer_m: float, sides: int) -> Mesh:
   )
 
 
+def crossed_discs(arm_m: float, radius_m: float) -> Mesh:
+  """Builds four discs at the ends of a level cross, facing up.
+
+  Args:
+    arm_m: Distance of their middles from the origin, along the diagonals.
+    radius_m: Of each disc.
+  """
+  sides, width_m = 12, radius_m / 3  # Half the width of the cross.
+  fan = np.array([(0, i, i + 1) for i in range(1, sides - 1)])
+  middles_m = (
+    arm_m
+    * math.sqrt(0.5)
+    * np.array([(1, 1, 0), (-1, 1, 0), (-1, -1, 0), (1, -1, 0)])
+  )
+  ways = middles_m / arm_m
+  corners, faces = [], []
+  for middle, way in zip(middles_m, ways, strict=True):
+    faces.append(fan + sum(map(len, corners)))
+    corners.append(radius_m * _circle(sides) + middle)
+    aside = width_m * np.array([-way[1], way[0], 0.0])
+    faces.append(np.array([(0, 1, 2), (0, 2, 3)]) + sum(map(len, corners)))
+    corners.append(np.array([-aside, middle - aside, middle + aside, aside]))
+  return _flat(np.concatenate(corners), np.concatenate(faces))
+
+
 def _flat(vertices_m: np.ndarray, faces: np.ndarray) -> Mesh:
   return Mesh(vertices_m, np.tile(_UP, (len(vertices_m), 1)), faces)
 

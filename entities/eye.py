@@ -1,4 +1,4 @@
-"""The observer's camera as a composer observable, and what can spoil it."""
+"""The observer's camera as a composer observable."""
 
 from collections.abc import Callable
 import weakref
@@ -8,9 +8,7 @@ from dm_control.composer.observation import observable
 from dm_env import specs
 import numpy as np
 
-from waggle_tasks import errors
 from waggle_tasks.entities import renderer
-from waggle_tasks.protocol import checks
 
 FOVY_DEG = 60.0  # Paper, section 'Scene, sensors, and information boundaries'.
 # Ahead of the centre of mass, clear of the airframe.
@@ -28,10 +26,6 @@ def _renderer(physics: mjcf.Physics) -> renderer.Renderer:
   if key not in _RENDERERS:
     _RENDERERS[key] = renderer.Renderer(physics)
   return _RENDERERS[key]
-
-
-class CorruptorError(errors.WaggleError):
-  """A disturbance of no sensible size."""
 
 
 class EyeCamera(observable.Observable):
@@ -75,56 +69,3 @@ class EyeCamera(observable.Observable):
     if self.corruptor:
       return lambda: eyes.image(camera_id, self._incremental).copy()
     return lambda: eyes.image(camera_id, self._incremental)
-
-
-def black(
-  image: np.ndarray,  # (480, 640, 3) uint8
-  random_state: np.random.RandomState,
-) -> np.ndarray:
-  """A camera that delivers only black images (paper, section 'Controls')."""
-  del random_state
-  image[:] = 0
-  return image
-
-
-class GaussianNoise:
-  """Independent noise on every value of every image."""
-
-  def __init__(self, sigma: float) -> None:
-    """Makes the corruptor.
-
-    Args:
-      sigma: Standard deviation in grey levels, 0 to 128.
-
-    Raises:
-      CorruptorError: if it is not.
-    """
-    checks.number('sigma', sigma, 0, 128, CorruptorError)
-    self._sigma = sigma
-
-  def __call__(
-    self,
-    image: np.ndarray,  # (480, 640, 3) uint8
-    random_state: np.random.RandomState,
-  ) -> np.ndarray:
-    """Adds noise, rounded and clipped to 0 to 255."""
-    noise = random_state.normal(0.0, self._sigma, image.shape)
-    return np.clip(np.rint(image + noise), 0, 255).astype(np.uint8)
-
-
-class FrozenFrame:
-  """A camera that repeats the image it took first in an episode."""
-
-  def __init__(self) -> None:
-    self._first: np.ndarray | None = None
-
-  def __call__(
-    self,
-    image: np.ndarray,  # (480, 640, 3) uint8
-    random_state: np.random.RandomState,
-  ) -> np.ndarray:
-    """Returns the first image."""
-    del random_state
-    if self._first is None:
-      self._first = image
-    return self._first.copy()

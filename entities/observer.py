@@ -1,12 +1,11 @@
 """An observer: a Crazyflie with an eye, which is all that it has."""
 
-from collections.abc import Callable
-
 from dm_control import composer, mjcf
 from dm_control.composer.observation import observable
 import numpy as np
 
-from waggle_tasks.entities import crazyflie, eye
+from waggle_tasks import sensor as sensor_lib
+from waggle_tasks.entities import crazyflie, eye, feed
 
 CAMERAS = ('incremental', 'full')
 
@@ -14,8 +13,8 @@ CAMERAS = ('incremental', 'full')
 class Observer(crazyflie.Crazyflie):
   """A Crazyflie whose camera looks where its nose points.
 
-  `corruptor` is the seam for spoiling its images: a function without
-  arguments that makes a new `eye.Corruptor` for each episode, or None.
+  Attributes:
+    sensor: What spoils its images, from the next episode on.
   """
 
   def _build(
@@ -23,6 +22,7 @@ class Observer(crazyflie.Crazyflie):
     name: str = 'observer',
     camera: str = 'incremental',
     eye_offset_m: float = eye.OFFSET_M,
+    sensor: sensor_lib.Sensor = sensor_lib.Sensor(),
   ) -> None:
     """Builds the model.
 
@@ -30,6 +30,7 @@ class Observer(crazyflie.Crazyflie):
       name: Model name, the prefix of everything inside it.
       camera: One of `CAMERAS`: how its images are rendered.
       eye_offset_m: How far the eye is ahead of the centre of mass.
+      sensor: What spoils its images.
     """
     super()._build(name, crazyflie.AZURE)
     self._incremental = camera == 'incremental'
@@ -37,7 +38,8 @@ class Observer(crazyflie.Crazyflie):
       'camera', name='eye', pos=(eye_offset_m, 0, 0),
       xyaxes=(0, -1, 0, 0, 0, 1), fovy=eye.FOVY_DEG,
     )  # fmt: skip
-    self.corruptor: Callable[[], eye.Corruptor] | None = None
+    self.sensor = sensor
+    self._feed: feed.Feed | None = None
 
   def _build_observables(self) -> 'ObserverObservables':
     return ObserverObservables(self)
@@ -55,10 +57,26 @@ class Observer(crazyflie.Crazyflie):
   def initialize_episode(
     self, physics: mjcf.Physics, random_state: np.random.RandomState
   ) -> None:
-    """Gives the camera this episode's corruptor."""
-    del physics, random_state
-    make = self.corruptor
-    self.observables.camera.corruptor = make() if make else None
+    """Begins this episode's feed, if anything is to be spoilt."""
+    camera, time_s = self.observables.camera, self.observables.time_s
+    self._feed = camera.corruptor = time_s.corruptor = None
+    if not self.sensor.is_clean:
+      self._feed = feed.Feed(self.sensor, random_state)
+      camera.corruptor, time_s.corruptor = self._feed.image, self._feed.time_s
+      self._feed.advance(_time_s(physics))
+
+  def after_step(
+    self, physics: mjcf.Physics, random_state: np.random.RandomState
+  ) -> None:
+    """Brings the feed to the frame that is observed next."""
+    del random_state
+    if self._feed is not None:
+      self._feed.advance(_time_s(physics))
+
+
+def _time_s(physics: mjcf.Physics) -> np.ndarray:
+  # Rounded, as summing physics steps leaves errors far under 1 us.
+  return np.round(physics.time(), 6)
 
 
 class ObserverObservables(crazyflie.CrazyflieObservables):
@@ -72,5 +90,4 @@ class ObserverObservables(crazyflie.CrazyflieObservables):
   @composer.observable
   def time_s(self) -> observable.Generic:
     """Simulation time of the image: () float64, seconds."""
-    # Rounded, as summing physics steps leaves errors far under 1 us.
-    return observable.Generic(lambda physics: np.round(physics.time(), 6))
+    return observable.Generic(_time_s)

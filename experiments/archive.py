@@ -15,10 +15,10 @@ from waggle_tasks.experiments import rollout as rollout_lib
 from waggle_tasks.experiments import story
 from waggle_tasks.experiments import traces as traces_lib
 from waggle_tasks.protocol import (
+  decoys,
   frame,
   gestures,
   payload,
-  schedule,
   timing,
 )
 from waggle_tasks.protocol.symbols import Symbol
@@ -71,7 +71,9 @@ class Run:
     scene = self.scenario
     bits = payload.Payload.from_bits(scene['payload'])
     pauses = timing.Timing(**scene['pauses'])
-    dance = schedule.broadcast(frame.motions(bits), self.codebook, pauses)
+    dance = decoys.dance(
+      scene['control'], bits, scene['seed'], self.codebook, pauses
+    )
     stops_s = {'no_send': 0.0, 'interrupted': scene['stop_s']}
     stop_s = stops_s.get(scene['control'], math.inf)
     return story.sent(dance, min(stop_s, self.end_s))

@@ -41,7 +41,11 @@ class CaptureError(errors.WaggleError):
 
 
 class Writer:
-  """Writes one observer's images; a context manager."""
+  """Writes one observer's images; a context manager.
+
+  Attributes:
+    last_s: Time of the last image.
+  """
 
   def __init__(self, path: pathlib.Path) -> None:
     """Begins a file."""
@@ -49,6 +53,7 @@ class Writer:
     self._crc = 0
     self._images = 0
     self._last: np.ndarray | None = None
+    self.last_s = -math.inf
     self._put(_MAGIC)
 
   def __enter__(self) -> 'Writer':
@@ -85,6 +90,7 @@ class Writer:
     )
     self._put(data)
     self._images += 1
+    self.last_s = time_s
 
   def _put(self, data: bytes) -> None:
     self._crc = zlib.crc32(data, self._crc)
@@ -208,7 +214,8 @@ class Recorder:
       self._writers, timestep.observation, team.agents, strict=True
     ):
       time_s = float(observation['time_s'])
-      if agent.receiver.track.time_s == time_s:  # Navigating, it reads none.
+      # Navigating, it reads none; an image that comes again, it passes over.
+      if agent.receiver.track.time_s == time_s and writer.last_s < time_s:
         writer.write(observation['camera'], time_s)
 
 

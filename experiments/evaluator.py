@@ -14,7 +14,7 @@ import numpy as np
 from waggle_tasks import scenario
 from waggle_tasks.agents import observer_agent, receiver
 from waggle_tasks.experiments import rollout as rollout_lib
-from waggle_tasks.protocol import flight, timing
+from waggle_tasks.protocol import decoys, flight, timing
 from waggle_tasks.tasks import progress, safety
 
 # A message is eight motions between nine nulls (paper, section 'Motion
@@ -83,7 +83,7 @@ class Verdict:
 
 def expected_bits(scene: scenario.Scenario, number: int) -> str | None:
   """What observer `number`, from 1, should read; None for nothing."""
-  if scene.control == 'no_send':
+  if scene.control in ('no_send', *decoys.DECOYS):
     return None
   if scene.control == 'interrupted' and scene.stop_s < scene.schedule.end_s:
     return None
@@ -162,10 +162,12 @@ def _judge_reading(
   failures += _frame(frame_events, message.message.bits)
   if message.message.bits != expected:
     failures.append(f'message: read {message.message.bits}, sent {expected}')
-  if start_s != message.time_s:
-    failures.append(
-      f'release: navigation at {start_s} s, final null at {message.time_s} s'
-    )
+  final_null_s = message.time_s if message.symbol == 'NULL' else None
+  if start_s != final_null_s:
+    null = 'no final null'
+    if final_null_s is not None:
+      null = f'final null at {final_null_s} s'
+    failures.append(f'release: navigation at {start_s} s, {null}')
   failures += [
     f'safety: {event.reason}'
     for event in events
@@ -175,8 +177,8 @@ def _judge_reading(
   failures += flown.pop('failures')
   return Outcome(
     name, expected, message.message.bits,
-    end_s=frame_events[-2].time_s if len(frame_events) > 1 else None,
-    final_null_s=message.time_s, start_s=start_s,
+    end_s=_end_s(frame_events),
+    final_null_s=final_null_s, start_s=start_s,
     failures=tuple(failures), **flown,
   )  # fmt: skip
 
@@ -188,6 +190,11 @@ def _message(
     if isinstance(event, receiver.Event) and event.message is not None:
       return event
   return None
+
+
+def _end_s(events: Sequence[receiver.Event]) -> float | None:
+  times_s = [event.time_s for event in events if event.symbol == 'END']
+  return times_s[-1] if times_s else None
 
 
 def _start_s(events: Sequence[rollout_lib.Event]) -> float | None:
@@ -211,7 +218,7 @@ def _early_motion(
   rollout: rollout_lib.Rollout, name: str, until_s: float
 ) -> list[str]:
   """Whether it left its place before `until_s`."""
-  positions_m = rollout.positions_m[name]
+  positions_m = rollout.steady_m(name)
   away_m = np.linalg.norm(positions_m - positions_m[0], axis=1)
   early = (away_m > progress.MOTION_M) & (rollout.times_s <= until_s)
   if not early.any():
@@ -239,9 +246,11 @@ def _fly(
   message_s: float,
 ) -> dict[str, object]:
   """Arrival and hold at the place that was sent, by true positions."""
-  positions_m, times_s = rollout.positions_m[name], rollout.times_s
+  positions_m, times_s = rollout.steady_m(name), rollout.times_s
   begin = int(np.searchsorted(times_s, message_s - timing.FRAME_S / 2))
-  target_m = positions_m[begin] + expected_displacement_m(scene)
+  # An observer flies from where it was, drift and all, at the agreed height.
+  drift_m = (rollout.positions_m[name] - positions_m)[begin] * (1, 1, 0)
+  target_m = positions_m[begin] + drift_m + expected_displacement_m(scene)
   error_m = np.linalg.norm(positions_m - target_m, axis=1)
   speed_mps = (
     np.linalg.norm(

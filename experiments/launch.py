@@ -97,10 +97,16 @@ def worker_count(flag: flags.FlagHolder[int | None]) -> int:
 
 def given_flags() -> list[str]:
   """Returns the flags that the user gave, as they would be written again."""
-  given = [
-    flags.FLAGS[name] for name in flags.FLAGS if flags.FLAGS[name].present
-  ]
-  return sorted(flag.serialize() for flag in given)
+  out = []
+  for name in sorted(flags.FLAGS):
+    flag = flags.FLAGS[name]
+    if not flag.present:
+      continue
+    line = flag.serialize()
+    # One that is given again and again keeps its order.
+    again = isinstance(flag, flags.MultiFlag)
+    out += line.split('\n') if again else [line]
+  return out
 
 
 def help_text(program: str, module: types.ModuleType) -> str:

@@ -15,6 +15,8 @@ import signal
 import time
 import traceback
 
+import cv2
+
 from waggle_tasks import errors
 
 SILENCE_S = 120.0  # Longer than any job is silent, starting included.
@@ -106,6 +108,12 @@ def run(
       _end(worker)
 
 
+def share_cores() -> None:
+  """Keeps this process to one core; others work beside it."""
+  os.environ.setdefault('LP_NUM_THREADS', '0')  # Draw in this thread.
+  cv2.setNumThreads(1)
+
+
 def _start() -> _Worker:
   context = multiprocessing.get_context('spawn')
   ours, theirs = context.Pipe()
@@ -155,7 +163,7 @@ def _end(worker: _Worker) -> None:
 def _serve(pipe: connection.Connection) -> None:
   """What a worker process does; it ends when its parent is gone."""
   signal.signal(signal.SIGINT, signal.SIG_IGN)  # The parent ends workers.
-  os.environ.setdefault('LP_NUM_THREADS', '0')  # Draw in this thread.
+  share_cores()
   while True:
     try:
       job = pipe.recv()

@@ -11,12 +11,16 @@ import platform
 import shlex
 
 import waggle_tasks
-from waggle_tasks import agents, arenas, entities, experiments
+from waggle_tasks import agents, arenas, entities, errors, experiments
 
 _DISTRIBUTIONS = (
   'absl-py', 'dm-control', 'dm-env', 'mujoco', 'numpy',
   'opencv-python-headless', 'scipy', 'tqdm', 'xxhash',
 )  # fmt: skip
+
+
+class SourceError(errors.WaggleError):
+  """Sources that changed while something ran."""
 
 
 def source_hashes() -> dict[str, str]:
@@ -28,6 +32,23 @@ def source_hashes() -> dict[str, str]:
       name = package.__name__ + '/' + path.relative_to(folder).as_posix()
       out[name] = hashlib.sha256(path.read_bytes()).hexdigest()
   return out
+
+
+def check_unchanged(hashes: dict[str, str], what: str) -> None:
+  """Refuses results when the sources are not those that they began with.
+
+  Args:
+    hashes: `source_hashes` as they were.
+    what: What ran, for people.
+
+  Raises:
+    SourceError: if they changed.
+  """
+  if source_hashes() != hashes:
+    raise SourceError(
+      f'sources must not change while a {what} runs: run it again, cases of'
+      ' other sources are run anew'
+    )
 
 
 def source_digest(hashes: dict[str, str]) -> str:

@@ -4,6 +4,7 @@ from collections.abc import Iterator, Mapping
 import contextlib
 import dataclasses
 import enum
+import hashlib
 import json
 import os
 import pathlib
@@ -51,6 +52,25 @@ def config(scene: scenario.Scenario, receiver_name: str) -> dict[str, object]:
   if not isinstance(scene.layout, str):
     fields['layout'] = {type(scene.layout).__name__: fields['layout']}
   return {'receiver': receiver_name, 'scenario': fields}
+
+
+def identity(
+  scene: scenario.Scenario, receiver_name: str, source_digest: str
+) -> str:
+  """A SHA-256 of all that decides the result of an episode.
+
+  Args:
+    scene: The scenario.
+    receiver_name: The receiver.
+    source_digest: Of this project's sources, see `provenance`.
+  """
+  parts = {
+    'config': config(scene, receiver_name),
+    'sources': source_digest,
+    'versions': provenance.versions(),
+  }
+  text = json.dumps(to_json(parts), sort_keys=True)
+  return hashlib.sha256(text.encode()).hexdigest()
 
 
 def event_lines(rollout: rollout_lib.Rollout) -> Iterator[str]:

@@ -1,8 +1,8 @@
 """Makes the page of a folder again from the data in it.
 
 FOLDER is a run folder, as `waggle broadcast` leaves one, or the result folder
-of `waggle suite`; its page is index.html, a static file that needs neither a
-server nor a network.
+of `waggle suite` or `waggle sweep`; its page is index.html, a static file that
+needs neither a server nor a network.
 """
 
 from collections.abc import Sequence
@@ -11,7 +11,7 @@ import sys
 
 from absl import flags
 
-from waggle_tasks.experiments import launch
+from waggle_tasks.experiments import launch, sweep_output, sweep_runner
 from waggle_tasks.experiments.pages import run_page, suite_page
 
 ARGUMENTS = 'FOLDER'
@@ -22,6 +22,9 @@ def main(argv: Sequence[str]) -> int:
   if len(argv) != 2:
     raise flags.Error(f'takes one {ARGUMENTS}: got {argv[1:]}')
   folder = pathlib.Path(argv[1])
+  if (folder / sweep_runner.JOURNAL).exists():
+    print(sweep_output.write(folder, sweep_runner.read(folder)))
+    return 0
   is_suite = (folder / suite_page.RESULTS).exists()
   print((suite_page if is_suite else run_page).write(folder))
   return 0

@@ -34,6 +34,8 @@ class Rollout:
       checks refused, in order of time.
     renderer: The GL renderer that drew the images.
     traces: By observer name, what its receiver saw in each image.
+    drifts_m: By vehicle name, (T, 3) how far it was taken from its reference;
+      nobody when empty.
   """
 
   times_s: np.ndarray
@@ -42,6 +44,11 @@ class Rollout:
   events: dict[str, tuple[Event, ...]]
   renderer: str
   traces: dict[str, traces_lib.Trace] = dataclasses.field(default_factory=dict)
+  drifts_m: dict[str, np.ndarray] = dataclasses.field(default_factory=dict)
+
+  def steady_m(self, name: str) -> np.ndarray:
+    """(T, 3) true positions of a vehicle, less its drift: nobody's command."""
+    return self.positions_m[name] - self.drifts_m.get(name, 0.0)
 
 
 def run(
@@ -75,12 +82,13 @@ def _run(
   team: observer_agent.Team,
   watchers: Sequence[Watcher],
 ) -> Rollout:
-  task, truth, contacts = environment.task, [], []
+  task, truth, drifts, contacts = environment.task, [], [], []
   tracer = traces_lib.Tracer(len(team.agents))
   timestep = environment.reset()
   physics = environment.physics  # Resetting may compile a new one.
   while True:
     truth.append(task.positions_m(physics))
+    drifts.append(task.drifts_m())
     time_s = (len(truth) - 1) * timing.FRAME_S
     contacts += [(time_s, pair) for pair in task.contacts]
     action = team.step(timestep.observation)
@@ -104,4 +112,5 @@ def _run(
     events,
     provenance.renderer_name(),
     dict(zip(events, tracer.traces(), strict=True)),
+    {name: np.stack([d[name] for d in drifts]) for name in drifts[0]},
   )

@@ -1,14 +1,10 @@
 """Flags for every choice of a scenario, and the scenario that they make."""
 
-import dataclasses
-import inspect
-import math
-
 from absl import flags
 
 from waggle_tasks import appearance, scenario
 from waggle_tasks.entities import observer
-from waggle_tasks.protocol import gestures, payload, timing
+from waggle_tasks.experiments import scenario_fields
 
 # Flags defined here belong to the launcher that asks for them.
 flags.disclaim_key_flags()
@@ -19,6 +15,7 @@ _HELP = {
   'layout': 'Where observers stand.',
   'distance_m': 'Radius of the arc, or distance of the line, in m.',
   'half_span_deg': 'Angle from the middle of the arc to its end, in degrees.',
+  'bearing_deg': 'Angle by which the middle of the arc is turned, in degrees.',
   'spacing_m': 'Distance between neighbours in a line, in m.',
   'payload': 'Six bits: one of direction, three of heading, two of distance.',
   'jitter_m': 'Bound of the initial x and y offset of each vehicle, in m.',
@@ -29,8 +26,33 @@ _HELP = {
   'camera': 'How images are rendered; the picture is the same.',
   'eye_offset_m': "How far an eye is ahead of its vehicle's centre, in m.",
   'floor': 'The floor of the room.',
+  'walls': 'The walls of the room.',
+  'sun': 'A low sun, with shadows on the floor.',
   'brightness': 'Brightness of every light, 1 as designed.',
   'shadows': 'Whether lights cast shadows; slower.',
+  'bystanders': 'How many other vehicles fly behind the performer, 4 at most.',
+  'occluder_every_s': 'Mean time between passes of a board, in s; 0 is none.',
+  'occluder_width_m': 'Width of the board, in m.',
+  'occluder_mps': 'Speed of the board, in m/s.',
+  'performer_drift_m': "Rms of the performer's drift along each axis, in m.",
+  'observer_drift_m': "Rms of each observer's drift along each axis, in m.",
+  'observer_yaw_drift_deg': "Rms of each observer's drift in heading.",
+  'drift_time_s': 'Time in which a drift becomes another, in s.',
+  'step_gain': 'Factor of brightness from --step_s on; 1 is none.',
+  'step_s': 'When brightness changes, in s.',
+  'flicker_share': 'Amplitude of flicker, as a share of brightness.',
+  'flicker_hz': 'Frequency of flicker, in Hz.',
+  'exposure_s': 'Exposure of an image, in s: motion is blended in.',
+  'noise_sigma': 'Gaussian noise of images, in grey levels.',
+  'photons': 'Photons at full white, for shot noise; 0 is none.',
+  'blackout_s': 'When images turn black, in s.',
+  'blackout_length_s': 'How long images are black, in s; 0 is never.',
+  'blackout_share': 'Share of the width of images that turns black.',
+  'repeated_share': 'Probability that the last image comes with a new time.',
+  'freeze_s': 'When images freeze, in s.',
+  'freeze_length_s': 'How long images are frozen, in s; 0 is never.',
+  'late_frames': 'How many frames late images come, with their own times.',
+  'dropped_share': 'Probability that no image comes in a frame.',
   'initial_hover_s': 'Stillness before START, in s.',
   'settle_s': 'Stillness after a gesture, in s.',
   'gap_s': 'Hover gap between gestures, in s.',
@@ -46,33 +68,14 @@ _CHOICES = {
   'layout': scenario.LAYOUTS,
   'camera': observer.CAMERAS,
   'floor': appearance.FLOORS,
+  'walls': appearance.WALLS,
+  'sun': appearance.SUNS,
 }
-_GROUPS = {'pauses': timing.Timing, 'appearance': appearance.Appearance}
-
-
-def _defaults() -> dict[str, object]:
-  """Every flag and its default, those of the dataclasses."""
-  out = {}
-  for field in dataclasses.fields(scenario.Scenario):
-    if field.name in _GROUPS:
-      out |= dataclasses.asdict(field.default)
-    elif field.name not in ('codebook', 'units'):
-      out[field.name] = field.default
-  signature = inspect.signature(gestures.v_codebook)
-  gesture = {n: p.default for n, p in signature.parameters.items()}
-  gesture['gesture_s'] = gesture.pop('duration_s')
-  units = payload.Units()
-  return {
-    **out,
-    **gesture,
-    'heading_step_deg': math.degrees(units.heading_step_rad),
-    'distance_unit_m': units.distance_unit_m,
-  }
 
 
 def define() -> None:
   """Defines the flags for the launcher that calls this."""
-  for name, default in _defaults().items():
+  for name, default in scenario_fields.defaults().items():
     text = _HELP[name]
     if name in _CHOICES:
       text = f'{text} One of {", ".join(_CHOICES[name])}.'
@@ -93,17 +96,9 @@ def read() -> scenario.Scenario:
   Raises:
     WaggleError: if a value breaks a rule of the scenario.
   """
-  values = {name: flags.FLAGS[name].value for name in _defaults()}
-  codebook = gestures.v_codebook(
-    values.pop('half_width_m'),
-    values.pop('start_height_m'),
-    values.pop('gesture_s'),
-  )
-  units = payload.Units(
-    math.radians(values.pop('heading_step_deg')), values.pop('distance_unit_m')
-  )
-  groups = {}
-  for group, kind in _GROUPS.items():
-    names = [field.name for field in dataclasses.fields(kind)]
-    groups[group] = kind(**{name: values.pop(name) for name in names})
-  return scenario.Scenario(**values, **groups, codebook=codebook, units=units)
+  return scenario_fields.make(values())
+
+
+def values() -> dict[str, object]:
+  """What the flags say, by the names of `scenario_fields`."""
+  return {name: flags.FLAGS[name].value for name in scenario_fields.defaults()}

@@ -24,6 +24,20 @@ def clopper_pearson(successes: int, trials: int) -> tuple[float, float]:
   return float(interval.low), float(interval.high)
 
 
+def upper_limit(events: int, trials: int) -> float:
+  """The exact one-sided 95 % upper limit of a proportion.
+
+  It is Clopper and Pearson's; for no event 1 - 0.05^(1/trials), about three
+  in `trials`.
+
+  Args:
+    events: At most `trials`.
+    trials: At least 1.
+  """
+  test = stats.binomtest(events, trials, alternative='less')
+  return float(test.proportion_ci(LEVEL, 'exact').high)
+
+
 def bootstrap_by_broadcast(
   correct: Sequence[int], exposures: Sequence[int]
 ) -> tuple[float, float]:

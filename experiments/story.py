@@ -55,13 +55,12 @@ class Reading:
 
   def _read(self, event: receiver.Event) -> 'Reading':
     symbols = self.symbols
-    if event.rejection is not None or event.state is frame.State.START:
+    ended = event.rejection is not None or event.state is frame.State.START
+    if ended and event.message is None:
       symbols = ()  # A frame can only begin anew.
     begun = event.rejection is None or event.state is frame.State.SEPARATOR
     if event.symbol is not Symbol.NULL and begun:
       symbols = (*symbols, event.symbol)
-    if event.message is not None:
-      symbols = self.symbols
     bits = sum(symbol in BITS for symbol in symbols)
     waits_for = _WAITS_FOR.get(event.state, f'bit {bits + 1}')
     message = event.message.bits if event.message else None

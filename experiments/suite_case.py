@@ -7,35 +7,16 @@ import json
 import pathlib
 import shutil
 
-import cv2
-from dm_control import composer
-import dm_env
-
 from waggle_tasks import suites
-from waggle_tasks.agents import observer_agent
-from waggle_tasks.experiments import evaluator, provenance, records
+from waggle_tasks.experiments import (
+  evaluator,
+  job_progress,
+  provenance,
+  records,
+)
 from waggle_tasks.experiments import rollout as rollout_lib
-from waggle_tasks.protocol import timing
 
 SEAL = 'seal.json'
-_REPORT_FRAMES = 50  # How often a running case says that it is alive.
-
-
-def identity(case: suites.Case, receiver_name: str, source_digest: str) -> str:
-  """A SHA-256 of all that decides a case's result.
-
-  Args:
-    case: The case.
-    receiver_name: The receiver.
-    source_digest: Of this project's sources, see `provenance`.
-  """
-  parts = {
-    'config': records.config(case.scene, receiver_name),
-    'sources': source_digest,
-    'versions': provenance.versions(),
-  }
-  text = json.dumps(records.to_json(parts), sort_keys=True)
-  return hashlib.sha256(text.encode()).hexdigest()
 
 
 def fly(
@@ -56,22 +37,11 @@ def fly(
     command: The shell line that runs it again.
     draft: The folder to leave; replaced when it exists.
   """
-  cv2.setNumThreads(1)  # Workers share the cores.
   shutil.rmtree(draft, ignore_errors=True)
   draft.mkdir(parents=True)
   began = datetime.datetime.now(datetime.UTC)
-
-  def watch(
-    environment: composer.Environment,
-    timestep: dm_env.TimeStep,
-    team: observer_agent.Team,
-  ) -> None:
-    del team
-    frame = timing.frames(environment.physics.time())
-    if timestep.last() or frame % _REPORT_FRAMES == 0:
-      report(frame)
-
-  rollout = rollout_lib.run(case.scene, receiver_name, [watch])
+  watchers = [job_progress.reporter(report)]
+  rollout = rollout_lib.run(case.scene, receiver_name, watchers)
   verdict = evaluator.evaluate(case.scene, rollout)
   origin = provenance.Provenance.of(command, rollout.renderer, began)
   records.write_run(draft, case.scene, receiver_name, rollout, verdict, origin)

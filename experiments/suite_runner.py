@@ -1,25 +1,25 @@
 """Runs the cases of a suite into a folder, and goes on where it was ended."""
 
-from collections.abc import Iterator, Sequence
-import contextlib
+from collections.abc import Sequence
 import csv
-import fcntl
 import io
 import os
 import pathlib
 import shutil
 
-import tqdm
-
-from waggle_tasks import errors, suites
-from waggle_tasks.experiments import pool, provenance, records, suite_case
+from waggle_tasks import suites
+from waggle_tasks.experiments import (
+  job_progress,
+  pool,
+  provenance,
+  records,
+  result_folder,
+  suite_case,
+)
 from waggle_tasks.protocol import timing
 
-_CASES, _DRAFTS, _LOCK = 'cases', '.drafts', '.lock'
-
-
-class SourceError(errors.WaggleError):
-  """Sources that changed while a suite ran."""
+_CASES, _DRAFTS = 'cases', '.drafts'
+_TABLES = 'results.jsonl', 'results.csv', 'index.html'
 
 
 def run(
@@ -52,10 +52,11 @@ def run(
   sources = provenance.source_hashes()
   digest = provenance.source_digest(sources)
   identities = {
-    case.name: suite_case.identity(case, receiver_name, digest)
+    case.name: records.identity(case.scene, receiver_name, digest)
     for case in cases
   }
-  with _locked(folder):
+  names = _CASES, _DRAFTS, *_TABLES
+  with result_folder.locked(folder, names, 'suite'):
     missing = _missing(cases, identities, folder)
     jobs = [
       pool.Job(
@@ -70,44 +71,14 @@ def run(
     ]  # fmt: skip
     _fly(jobs, folder, workers)
     shutil.rmtree(folder / _DRAFTS, ignore_errors=True)
-    if provenance.source_hashes() != sources:
-      raise SourceError(
-        'sources must not change while a suite runs: run it again, cases'
-        ' of other sources are run anew'
-      )
+    provenance.check_unchanged(sources, 'suite')
     rows = [suite_case.row(c, folder / _CASES / c.name) for c in cases]
-    _write(
+    result_folder.replace(
       folder / 'results.jsonl',
       ''.join(f'{records.dumps(row)}\n' for row in rows),
     )
-    _write(folder / 'results.csv', _csv(rows))  # fmt: skip
+    result_folder.replace(folder / 'results.csv', _csv(rows))
   return rows
-
-
-@contextlib.contextmanager
-def _locked(folder: pathlib.Path) -> Iterator[None]:
-  """Makes the folder and keeps a second run of a suite out of it."""
-  try:
-    folder.mkdir(parents=True, exist_ok=True)
-    tables = ('results.jsonl', 'results.csv', 'index.html')
-    known = {_CASES, _DRAFTS, _LOCK, *tables, *map(_draft_name, tables)}
-    strange = {p.name for p in folder.iterdir()} - known
-    if strange:
-      raise records.OutputError(
-        f'`output` must be new or hold results of a suite: {folder} holds'
-        f' {sorted(strange)[0]}'
-      )
-    with (folder / _LOCK).open('w') as lock:
-      fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-      yield
-  except BlockingIOError:
-    raise records.OutputError(
-      f'`output` must not be in use: another run is writing {folder}'
-    ) from None
-  except OSError as error:
-    raise records.OutputError(
-      f'`output` must be writable: {folder}: {error.strerror}'
-    ) from None
 
 
 def _missing(
@@ -139,23 +110,12 @@ def _fly(jobs: Sequence[pool.Job], folder: pathlib.Path, workers: int) -> None:
   lengths = {
     job.name: timing.frames(job.arguments[0].scene.episode_s) for job in jobs
   }
-  flown, active = dict.fromkeys(lengths, 0), {}
-  form = '{desc}|{bar}| {n:.0f}/{total:.0f} s simulated [{elapsed} <'
-  with tqdm.tqdm(
-    total=sum(lengths.values()), unit_scale=timing.FRAME_S, mininterval=0.5,
-    bar_format=form + ' {remaining}]',
-  ) as bar:  # fmt: skip
-    for news in pool.run(jobs, workers):
-      name = news.job.name
-      if isinstance(news, pool.Progress):
-        flown[name] = min(int(news.amount), lengths[name])
-        active[name] = True
-      else:
-        os.replace(folder / _DRAFTS / name, folder / _CASES / name)
-        flown[name] = lengths[name]  # Episodes may end before their time.
-        active.pop(name, None)
-      bar.set_description_str(f'{", ".join(active)} ', refresh=False)
-      bar.update(sum(flown.values()) - bar.n)
+  news = pool.run(jobs, workers)
+  for done in job_progress.shown(
+    news, lengths, lambda _, active: ', '.join(active)
+  ):
+    name = done.job.name
+    os.replace(folder / _DRAFTS / name, folder / _CASES / name)
 
 
 def _csv(rows: Sequence[dict[str, object]]) -> str:
@@ -176,14 +136,3 @@ def _csv(rows: Sequence[dict[str, object]]) -> str:
         ]
       )  # fmt: skip
   return text.getvalue()
-
-
-def _write(path: pathlib.Path, text: str) -> None:
-  """Replaces a file as a whole."""
-  draft = path.with_name(_draft_name(path.name))
-  draft.write_text(text, encoding='utf-8')
-  os.replace(draft, path)
-
-
-def _draft_name(name: str) -> str:
-  return f'.{name}.draft'

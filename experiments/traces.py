@@ -24,12 +24,14 @@ class Motion:
     begin_s: When it began.
     end_s: When it came to rest.
     path_px: (K, 2) the track in between, x right and y down.
+    width_px: How wide the target is, where the tracker knows.
   """
 
   confirmed_s: float
   begin_s: float
   end_s: float
   path_px: np.ndarray
+  width_px: float | None = None
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -101,7 +103,10 @@ class Tracer:
 
 
 def _motion(confirmed_s: float, segment: segmenter.Segment) -> Motion:
-  return Motion(confirmed_s, segment.begin_s, segment.end_s, segment.path_px)
+  return Motion(
+    confirmed_s, segment.begin_s, segment.end_s, segment.path_px,
+    segment.width_px,
+  )  # fmt: skip
 
 
 def save(path: pathlib.Path, traces: Mapping[str, Trace]) -> None:
@@ -114,6 +119,8 @@ def save(path: pathlib.Path, traces: Mapping[str, Trace]) -> None:
     arrays[f'{name}.motion_s'] = np.array(
       [(m.confirmed_s, m.begin_s, m.end_s) for m in motions]
     ).reshape(-1, 3)
+    widths_px = [m.width_px for m in motions]
+    arrays[f'{name}.motion_width_px'] = np.array(widths_px, float)  # Or NaN.
     lengths = [len(m.path_px) for m in motions]
     arrays[f'{name}.motion_lengths'] = np.array(lengths, int)
     arrays[f'{name}.motion_px'] = np.concatenate(
@@ -142,11 +149,15 @@ def _read(arrays: Mapping[str, np.ndarray], name: str) -> Trace:
   ends = np.cumsum(arrays[f'{name}.motion_lengths'])
   paths_px = np.split(arrays[f'{name}.motion_px'], ends)[:-1]
   motions = [
-    Motion(*map(float, moments), path_px)
-    for moments, path_px in zip(
-      arrays[f'{name}.motion_s'], paths_px, strict=True
+    Motion(
+      *map(float, moments), path_px,
+      None if np.isnan(width_px) else float(width_px),
     )
-  ]
+    for moments, path_px, width_px in zip(
+      arrays[f'{name}.motion_s'], paths_px,
+      arrays[f'{name}.motion_width_px'], strict=True,
+    )
+  ]  # fmt: skip
   return Trace(
     *(arrays[f'{name}.{field}'] for field in fields), motions=tuple(motions)
   )

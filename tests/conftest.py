@@ -7,6 +7,8 @@ finds it.
 from collections.abc import Callable, Iterator, Sequence
 import dataclasses
 import math
+import pathlib
+import time
 
 import dm_env
 import hypothesis
@@ -156,3 +158,68 @@ class _Flyer:
 def flyer() -> Callable[[Sequence[float], float], Agent]:
   """Makes an agent that flies an offset from where it was at a time."""
   return _Flyer
+
+
+@pytest.fixture
+def dancing(
+  load: Callable[..., registry.composer.Environment],
+) -> Callable[..., registry.composer.Environment]:
+  """Makes environments of 0.4 s in which the performer moves at once."""
+
+  def make(**changes: object) -> registry.composer.Environment:
+    at_once = {
+      'codebook': gestures.v_codebook(0.1, 0.3, duration_s=0.8),
+      'pauses': timing.Timing(0.0, 0.0, 0.0, 0.0),
+      'duration_s': 0.4,
+      'observers': 2,
+    }
+    return load('broadcast', **(at_once | changes))
+
+  return make
+
+
+@pytest.fixture
+def film() -> Callable[[registry.composer.Environment], np.ndarray]:
+  """All images of an episode: (observers, T, 480, 640, 3)."""
+
+  def run(environment: registry.composer.Environment) -> np.ndarray:
+    steps = [
+      [each['camera'].copy() for each in timestep.observation]
+      for timestep in _episode(environment, _hover)
+    ]
+    return np.stack(steps, axis=1)
+
+  return run
+
+
+def _session(leader: int) -> dict[int, str]:
+  found = {}
+  for path in pathlib.Path('/proc').glob('[0-9]*'):
+    try:
+      fields = (path / 'stat').read_text().rpartition(')')[2].split()
+      words = (path / 'cmdline').read_text()
+    except (FileNotFoundError, ProcessLookupError):
+      continue
+    # The dead stay listed until somebody reaps them.
+    if int(fields[3]) == leader and fields[0] not in 'ZX':
+      found[int(path.name)] = words
+  return found
+
+
+@pytest.fixture
+def session() -> Callable[[int], dict[int, str]]:
+  """The living processes of a session, by id, and their command lines."""
+  return _session
+
+
+def _wait_until(condition: Callable[[], object], limit_s: float = 60.0) -> None:
+  end_s = time.monotonic() + limit_s
+  while not condition():
+    assert time.monotonic() < end_s, f'not within {limit_s:g} s'
+    time.sleep(0.01)
+
+
+@pytest.fixture
+def wait_until() -> Callable[..., None]:
+  """Waits for a condition; fails when it does not come about."""
+  return _wait_until

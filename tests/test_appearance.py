@@ -16,8 +16,10 @@ def test_shadows_are_off_by_default() -> None:
   [
     (
       {'floor': 'lava'},
-      r"`floor` must be one of \['honeycomb', 'plain'\]: got 'lava'",
+      r"`floor` must be one of \['honeycomb', 'plain', 'clutter'\]: got 'lava'",
     ),
+    ({'walls': 'ivy'}, r"`walls` must be one of .* got 'ivy'"),
+    ({'sun': 'red'}, r"`sun` must be one of \['none', 'fixed', 'moving'\]"),
     ({'brightness': 0.0}, '`brightness` must be between 0.1 and 2: got 0.0'),
     ({'brightness': 2.1}, '`brightness` must be between 0.1 and 2: got 2.1'),
     ({'brightness': math.nan}, '`brightness` must be .* got nan'),

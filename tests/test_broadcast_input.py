@@ -48,6 +48,8 @@ CASES = {
   '--floor=grass': '`floor` must be one of',
   '--observer=3': 'unknown flag --observer. Did you mean --observers',
   '--seed=-1': '`seed` must be between 0 and 4294967295: got -1',
+  '--late_frames=26': '`late_frames` must be between 0 and 25: got 26',
+  '--dropped_share=2': '`dropped_share` must be between 0 and 1: got 2.0',
   '--jitter_m=1': '`jitter_m` must be between 0 and 0.1: got 1.0',
   '--half_width_m=0': '`half_width_m` must be between 0.01 and 1.2',
   '--start_height_m=9': '`start_height_m` must be between 0.01 and 2',
@@ -140,7 +142,7 @@ def test_help_shows_a_flag_for_every_choice() -> None:
   for name in ('receiver', 'output', *NUMBERS):
     assert f'--{name}=' in child.stdout
   for name in scenario.Scenario.__dataclass_fields__:
-    if name not in ('codebook', 'pauses', 'units', 'appearance'):
+    if name not in scenario.PARTS:
       assert f'--{name}=' in child.stdout
   assert '--observers=3 ' in child.stdout
   assert '--payload=000010 ' in child.stdout

@@ -66,6 +66,43 @@ def test_an_arc_stands_at_its_radius_from_minus_to_plus_half_span(
   np.testing.assert_allclose(positions_m(poses), expected, atol=1e-12)
 
 
+@pytest.mark.parametrize('count', [1, 2, 3, 4, 5])
+@pytest.mark.parametrize('bearing_deg', [-180, -85, 15, 85, 180])
+def test_a_bearing_turns_an_arc_about_the_performer(
+  count: int, bearing_deg: float
+) -> None:
+  straight = layouts.Arc(1.3, 30 * DEG).poses(count)
+  turned = layouts.Arc(1.3, 30 * DEG, bearing_deg * DEG).poses(count)
+  x, y, z = positions_m(straight).T
+  cos, sin = math.cos(bearing_deg * DEG), math.sin(bearing_deg * DEG)
+  expected = np.stack([cos * x - sin * y, sin * x + cos * y, z], axis=1)
+  np.testing.assert_allclose(positions_m(turned), expected, atol=1e-12)
+  for pose, (px, py, _) in zip(turned, expected, strict=True):
+    facing = (math.cos(pose.yaw_rad), math.sin(pose.yaw_rad))
+    assert facing == pytest.approx((-px / 1.3, -py / 1.3))
+
+
+def test_one_observer_stands_at_the_bearing() -> None:
+  (pose,) = layouts.Arc(2.0, 30 * DEG, 75 * DEG).poses(1)
+  x_m, y_m, _ = pose.position_m
+  assert math.degrees(math.atan2(x_m, -y_m)) == pytest.approx(75)
+  assert math.hypot(x_m, y_m) == pytest.approx(2.0)
+
+
+# Written before arcs could be turned; half a unit of the last place moves them.
+@pytest.mark.parametrize('count', [1, 2, 3, 4, 5, 12])
+@pytest.mark.parametrize('half_span_deg', [15.0, 30.0, 40.0, 45.0])
+def test_an_arc_that_is_not_turned_is_what_it_was_to_the_last_bit(
+  count: int, half_span_deg: float
+) -> None:
+  half_span_rad = math.radians(half_span_deg)
+  poses = layouts.Arc(1.3, half_span_rad, 0.0).poses(count)
+  assert poses == tuple(
+    layouts.facing_performer(1.3 * math.sin(angle), -1.3 * math.cos(angle))
+    for angle in half_span_rad * layouts.spread(count)
+  )
+
+
 def test_the_default_arc_is_the_papers() -> None:
   assert layouts.Arc() == layouts.Arc(1.3, 30 * DEG)
 
@@ -158,6 +195,8 @@ def test_no_jitter_leaves_poses_as_they_are() -> None:
     (lambda: layouts.Arc(1.3, -0.1), r'between 0 and 3.14159: got -0.1'),
     (lambda: layouts.Arc(1.3, 3.15), r'between 0 and 3.14159: got 3.15'),
     (lambda: layouts.Arc(1.3, math.nan), '`half_span_rad` must be a finite'),
+    (lambda: layouts.Arc(1.3, 0.5, 3.2), '`bearing_rad` must be between'),
+    (lambda: layouts.Arc(1.3, 0.5, math.nan), '`bearing_rad` must be a finite'),
     (lambda: layouts.Line(math.inf), '`separation_m` must be a finite number'),
     (lambda: layouts.Line(1.3, 0.0), '`spacing_m` must be between'),
     (lambda: layouts.Arc().poses(0), '`count` must be between 1 and .* got 0'),

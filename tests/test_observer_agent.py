@@ -101,6 +101,31 @@ def test_it_flies_from_where_it_is_and_not_from_where_it_was() -> None:
   np.testing.assert_allclose(start.target_m, (0.01, -0.9, 1.3))
 
 
+def test_an_image_that_comes_again_is_not_read_again() -> None:
+  script = Script(null(0.08, FORWARD))
+  agent = agent_of(script)
+  first = agent.step(observation(0.0, image=IMAGES[0]))
+  for time_s in (0.0, 0.0):
+    again = agent.step(observation(time_s, HOME_M + 0.1, IMAGES[0]))
+    np.testing.assert_array_equal(again, first)
+  for time_s, image in ((0.04, IMAGES[1]), (0.08, IMAGES[2]), (0.04, GREY)):
+    agent.step(observation(time_s, image=image))
+  assert script.times_s == TIMES_S
+  assert agent.events[-1].images == 3
+  assert agent.events[-1].provenance == digest(IMAGES, TIMES_S)
+
+
+def test_it_arrives_once_when_every_other_image_is_missing() -> None:
+  agent = agent_of(Script(null(0.0, FORWARD)))
+  position_m = HOME_M
+  for index in range(200):
+    position_m = agent.step(
+      observation(round(index // 2 * 0.08, 6), position_m)
+    )[:3]
+  deeds = [each.deed for each in agent.events[1:]]
+  assert deeds == [observer_agent.Deed.START, observer_agent.Deed.ARRIVAL]
+
+
 def digest(images: Sequence[np.ndarray], times_s: Sequence[float]) -> str:
   chain = provenance.Chain()
   for image, time_s in zip(images, times_s, strict=True):

@@ -116,7 +116,9 @@ def test_the_pins_that_work_are_declared(wheel: zipfile.ZipFile) -> None:
     'opencv-python-headless<6,>=5',
   ):
     assert pin in needs
-  assert declared.get_all('Provides-Extra') == ['video', 'test', 'dev']
+  assert declared.get_all('Provides-Extra') == [
+    'video', 'cluster', 'analysis', 'test', 'dev',
+  ]  # fmt: skip
 
 
 def test_the_wheel_is_imported_from_where_it_lies(

@@ -53,6 +53,8 @@ def test_only_the_named_numbers_change(
 @pytest.mark.parametrize('name', numbers(config.Config()))
 def test_every_number_can_be_written_and_read_back(name: str) -> None:
   value = numbers(config.Config())[name]
+  if isinstance(value, bool):
+    value = {True: 'on', False: 'off'}[value]
   assert receivers.configure(f'{name}={value}') == config.Config()
 
 
@@ -72,6 +74,10 @@ def test_every_number_can_be_written_and_read_back(name: str) -> None:
     ('klt:max_rmse=x', "`max_rmse` must be of type float: got 'x'"),
     ('klt:max_rmse=0.1=0.2', "`max_rmse` must be .*: got '0.1=0.2'"),
     ('klt:max_corners=2.5', "`max_corners` must be of type int: got '2.5'"),
+    ('klt:separators=no', "`separators` must be one of .*: got 'no'"),
+    ('klt:final_null', "`final_null` must be one of .*: got ''"),
+    ('klt:forward_backward=0', '`forward_backward` must be one of'),
+    ('absolute:forward_backward=off', "got 'forward_backward'"),
     ('klt:max_rmse=nan', '`max_rmse` must be a finite number: got nan'),
     ('klt:max_rmse=inf', '`max_rmse` must be a finite number: got inf'),
     ('klt:max_rmse=-0.1', '`max_rmse` must be between .*: got -0.1'),

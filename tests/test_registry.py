@@ -14,7 +14,7 @@ import pytest
 import waggle_tasks
 from waggle_tasks import registry, scenario
 from waggle_tasks.arenas import layouts
-from waggle_tasks.protocol import reference
+from waggle_tasks.protocol import decoys, reference
 from waggle_tasks.tasks import broadcast, controls
 
 Load = Callable[..., composer.Environment]
@@ -43,6 +43,7 @@ class Ring:
     ('no_send', controls.NoSend),
     ('black_input', controls.BlackInput),
     ('interrupted', controls.Interrupted),
+    *((name, controls.Decoy) for name in decoys.DECOYS),
   ],
 )
 def test_each_name_makes_an_environment_of_its_task(
@@ -53,7 +54,7 @@ def test_each_name_makes_an_environment_of_its_task(
 
 def test_every_name_is_covered_here() -> None:
   names = ['broadcast', 'no_send', 'black_input', 'interrupted']
-  assert [*registry.SCENARIOS] == names
+  assert [*registry.SCENARIOS] == [*names, *decoys.DECOYS]
 
 
 def test_the_package_loads_what_the_registry_does() -> None:
@@ -79,7 +80,7 @@ def test_an_unknown_name_lists_all_and_the_close_ones(
 ) -> None:
   with pytest.raises(scenario.ScenarioError) as caught:
     waggle_tasks.load(name)
-  names = "['broadcast', 'no_send', 'black_input', 'interrupted']"
+  names = [*registry.SCENARIOS]
   assert str(caught.value) == f'`task` must be one of {names}:{hint}'
 
 

@@ -57,6 +57,7 @@ def test_the_default_is_the_papers() -> None:
     ({'distance_m': '1'}, "`distance_m` must be a finite number: got '1'"),
     ({'half_span_deg': 180.1}, '`half_span_deg` must be between 0 and 180'),
     ({'half_span_deg': -1}, '`half_span_deg` must be between 0 and 180'),
+    ({'bearing_deg': 181}, '`bearing_deg` must be between -180 and 180'),
     ({'spacing_m': -0.6}, '`spacing_m` must be between 0 and 4: got -0.6'),
     (
       {'layout': 'lien'},
@@ -104,6 +105,7 @@ def test_a_choice_that_cannot_be_flown_is_refused(
   [
     'distance_m',
     'half_span_deg',
+    'bearing_deg',
     'spacing_m',
     'jitter_m',
     'stop_s',
@@ -236,6 +238,16 @@ def test_an_episode_lasts_as_long_as_its_control_needs(
   changes: dict[str, object], episode_s: float
 ) -> None:
   assert Scenario(**changes).episode_s == pytest.approx(episode_s)
+
+
+def test_a_bearing_places_a_single_observer_at_an_angle() -> None:
+  pose = Scenario(observers=1, bearing_deg=85.0).poses()['observer_1']
+  angle_rad = math.radians(85.0)
+  assert pose.position_m == pytest.approx(
+    (1.3 * math.sin(angle_rad), -1.3 * math.cos(angle_rad), 1.3)
+  )
+  ahead = Scenario(observers=1).poses()
+  assert Scenario(observers=1, bearing_deg=0.0).poses() == ahead
 
 
 def test_the_default_stop_is_the_papers() -> None:

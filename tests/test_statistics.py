@@ -41,6 +41,27 @@ def test_failures_and_successes_are_treated_alike(successes: int) -> None:
   assert low <= successes / 7 <= high
 
 
+# Clopper and Pearson (1934), one-sided; for no event 1 - 0.05^(1/n), and the
+# others solve P(X <= events) = 0.05.
+@pytest.mark.parametrize(
+  ('events', 'trials', 'limit'),
+  [
+    (0, 1, 0.95),
+    (0, 60, 1 - 0.05 ** (1 / 60)),
+    (0, 3000, 1 - 0.05 ** (1 / 3000)),
+    (1, 10, 0.39416),
+    (5, 10, 0.77756),
+    (10, 10, 1.0),
+  ],
+)
+def test_the_one_sided_upper_limit_of_a_proportion(
+  events: int, trials: int, limit: float
+) -> None:
+  assert statistics.upper_limit(events, trials) == pytest.approx(
+    limit, abs=1e-5
+  )
+
+
 def test_the_bootstrap_repeats_bit_for_bit() -> None:
   first = statistics.bootstrap_by_broadcast(CORRECT, EXPOSURES)
   np.random.random_sample()  # Its draws are its own, whatever others drew.

@@ -5,7 +5,9 @@ import dataclasses
 from waggle_tasks import errors
 from waggle_tasks.protocol import checks
 
-FLOORS = ('honeycomb', 'plain')
+FLOORS = ('honeycomb', 'plain', 'clutter')
+WALLS = ('plain', 'clutter')
+SUNS = ('none', 'fixed', 'moving')
 
 
 class AppearanceError(errors.WaggleError):
@@ -17,18 +19,25 @@ class Appearance:
   """What is around the vehicles.
 
   Attributes:
-    floor: One of `FLOORS`.
+    floor: One of `FLOORS`; 'clutter' is full of corners and edges.
+    walls: One of `WALLS`, and of the ceiling.
+    sun: One of `SUNS`: a low sun, and vehicles' shadows on the floor, which
+      observers see too. A moving one takes a minute for its swing.
     brightness: Scales every light, 0.1 to 2; 1 is the room as designed.
     shadows: Whether the main light casts shadows in the shared views; the
-      observers' own images never show any.
+      observers' own images never show those.
   """
 
   floor: str = 'honeycomb'
+  walls: str = 'plain'
+  sun: str = 'none'
   brightness: float = 1.0
   shadows: bool = False
 
   def __post_init__(self) -> None:
     checks.choice('floor', self.floor, FLOORS, AppearanceError)
+    checks.choice('walls', self.walls, WALLS, AppearanceError)
+    checks.choice('sun', self.sun, SUNS, AppearanceError)
     checks.number('brightness', self.brightness, 0.1, 2, AppearanceError)
     if not isinstance(self.shadows, bool):
       raise AppearanceError(

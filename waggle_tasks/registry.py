@@ -7,7 +7,7 @@ from dm_control import composer
 from waggle_tasks import scenario as scenario_lib
 from waggle_tasks.arenas import flight_room
 from waggle_tasks.entities import observer, performer
-from waggle_tasks.protocol import checks
+from waggle_tasks.protocol import checks, decoys
 from waggle_tasks.tasks import broadcast, controls
 from waggle_tasks.tasks import parts as parts_lib
 
@@ -18,6 +18,7 @@ SCENARIOS = {
   'no_send': Scenario(control='no_send'),
   'black_input': Scenario(control='black_input'),
   'interrupted': Scenario(control='interrupted'),
+  **{name: Scenario(control=name) for name in decoys.DECOYS},
 }
 
 
@@ -44,7 +45,10 @@ def build(scenario: Scenario) -> broadcast.Broadcast:
   """Builds the task of a scenario from new entities."""
   observers = tuple(
     observer.Observer(
-      f'observer_{number + 1}', scenario.camera, scenario.eye_offset_m
+      f'observer_{number + 1}',
+      scenario.camera,
+      scenario.eye_offset_m,
+      scenario.sensor,
     )
     for number in range(scenario.observers)
   )
@@ -58,7 +62,9 @@ def build(scenario: Scenario) -> broadcast.Broadcast:
     duration_s=scenario.episode_s,
     units=scenario.units,
     jitter_m=scenario.jitter_m,
+    drift=scenario.drift,
   )
+  scenario.surroundings.furnish(parts.room, parts.poses)
   match scenario.control:
     case 'no_send':
       return controls.NoSend(parts)
@@ -66,6 +72,8 @@ def build(scenario: Scenario) -> broadcast.Broadcast:
       return controls.BlackInput(parts, scenario.black_observer)
     case 'interrupted':
       return controls.Interrupted(parts, scenario.stop_s)
+  if scenario.control in decoys.DECOYS:
+    return controls.Decoy(parts)
   return broadcast.Broadcast(parts)
 
 

@@ -5,14 +5,17 @@ import math
 
 from waggle_tasks import appearance as appearance_lib
 from waggle_tasks import errors
+from waggle_tasks import sensor as sensor_lib
 from waggle_tasks.arenas import flight_room, layouts
 from waggle_tasks.entities import eye, observer
-from waggle_tasks.protocol import checks, frame, gestures, timing
+from waggle_tasks.protocol import checks, decoys, gestures, timing
 from waggle_tasks.protocol import payload as payload_lib
 from waggle_tasks.protocol import schedule as schedule_lib
+from waggle_tasks.tasks import drift as drift_lib
 from waggle_tasks.tasks import safety
+from waggle_tasks.tasks import surroundings as surroundings_lib
 
-CONTROLS = ('none', 'no_send', 'black_input', 'interrupted')
+CONTROLS = ('none', 'no_send', 'black_input', 'interrupted', *decoys.DECOYS)
 LAYOUTS = ('arc', 'line')
 # After the last gesture: the 3 s null, the flight, the hold, and time to spare.
 AFTERMATH_S = 12.0
@@ -25,6 +28,9 @@ PARTS = {
   'pauses': timing.Timing,
   'units': payload_lib.Units,
   'appearance': appearance_lib.Appearance,
+  'surroundings': surroundings_lib.Surroundings,
+  'drift': drift_lib.Drift,
+  'sensor': sensor_lib.Sensor,
 }
 
 
@@ -37,11 +43,14 @@ class Scenario:
   """One episode's configuration; the defaults are the paper's (Table 2).
 
   Attributes:
-    control: One of `CONTROLS`: 'none' for a nominal broadcast.
+    control: One of `CONTROLS`: 'none' for a nominal broadcast; with one of
+      `decoys.DECOYS` the performer flies what is no message.
     observers: How many observers, 1 to 64.
     layout: One of `LAYOUTS`, or a `layouts.Layout` of your own.
     distance_m: Radius of the arc, or distance of the line, 0.2 to 4 m.
     half_span_deg: Angle from the middle of the arc to its end, 0 to 180.
+    bearing_deg: Angle by which the middle of the arc is turned about the
+      performer, -180 to 180; one observer is there.
     spacing_m: Distance between neighbours in a line; the paper gives none.
     payload: Six bits, d|hhh|rr.
     jitter_m: Bound of the initial x and y offset of every vehicle.
@@ -54,6 +63,9 @@ class Scenario:
     pauses: The agreed pauses.
     units: The agreed heading step and distance unit.
     appearance: How the room looks.
+    surroundings: What else moves in it.
+    drift: How far vehicles wander from where they should be.
+    sensor: What spoils the observers' images.
     camera: One of `observer.CAMERAS`; both give the same picture.
     eye_offset_m: How far an observer's eye is ahead of its centre of mass.
   """
@@ -63,6 +75,7 @@ class Scenario:
   layout: str | layouts.Layout = 'arc'
   distance_m: float = 1.3
   half_span_deg: float = 30.0
+  bearing_deg: float = 0.0
   spacing_m: float = 0.6
   payload: str = '000010'
   jitter_m: float = 0.0
@@ -74,6 +87,9 @@ class Scenario:
   pauses: timing.Timing = timing.Timing()
   units: payload_lib.Units = payload_lib.Units()
   appearance: appearance_lib.Appearance = appearance_lib.Appearance()
+  surroundings: surroundings_lib.Surroundings = surroundings_lib.Surroundings()
+  drift: drift_lib.Drift = drift_lib.Drift()
+  sensor: sensor_lib.Sensor = sensor_lib.Sensor()
   camera: str = 'incremental'
   eye_offset_m: float = eye.OFFSET_M
 
@@ -99,6 +115,7 @@ class Scenario:
     numbers = {
       'distance_m': (0.2, 4.0),
       'half_span_deg': (0.0, 180.0),
+      'bearing_deg': (-180.0, 180.0),
       'spacing_m': (0.0, 4.0),
       'jitter_m': (0.0, 0.1),
       'stop_s': (0.0, 600.0),
@@ -110,7 +127,9 @@ class Scenario:
     for name, (low, high) in numbers.items():
       checks.number(name, getattr(self, name), low, high, ScenarioError)
     payload_lib.Payload.from_bits(self.payload)
-    self.poses()
+    longest = payload_lib.Payload.from_bits('000011')
+    reach_m = math.hypot(*longest.displacement_m(self.units))
+    self.surroundings.check(self.poses(), reach_m)
 
   @property
   def message(self) -> payload_lib.Payload:
@@ -119,9 +138,9 @@ class Scenario:
 
   @property
   def schedule(self) -> schedule_lib.Schedule:
-    """The dance of the whole message."""
-    return schedule_lib.broadcast(
-      frame.motions(self.message), self.codebook, self.pauses
+    """The dance: the whole message, or what is flown in place of one."""
+    return decoys.dance(
+      self.control, self.message, self.seed, self.codebook, self.pauses
     )
 
   @property
@@ -153,8 +172,9 @@ class Scenario:
       poses[f'observer_{index + 1}'] = pose
     for name, pose in poses.items():
       flight_room.check_inside(name, pose)
-    # Two neighbours can come closer by the jitter of both, along x and y.
-    nearer_m = 2 * math.hypot(self.jitter_m, self.jitter_m)
+    # Two neighbours can come closer by the jitter of both, along x and y, and
+    # by the drift of both.
+    nearer_m = 2 * math.hypot(self.jitter_m, self.jitter_m) + self.drift.near_m
     layouts.check_spacing(poses, safety.MINIMUM_SPACING_M + nearer_m)
     return poses
 
@@ -163,5 +183,9 @@ class Scenario:
       return self.layout
     checks.choice('layout', self.layout, LAYOUTS, ScenarioError)
     if self.layout == 'arc':
-      return layouts.Arc(self.distance_m, math.radians(self.half_span_deg))
+      return layouts.Arc(
+        self.distance_m,
+        math.radians(self.half_span_deg),
+        math.radians(self.bearing_deg),
+      )
     return layouts.Line(self.distance_m, self.spacing_m)

@@ -30,10 +30,10 @@ def draw(
     codebook: The agreed gestures.
     config: What it was compared with, and what scores are held against.
   """
-  paths = {m.confirmed_s: m.path_px for m in trace.motions} if trace else {}
+  motions = {m.confirmed_s: m for m in trace.motions} if trace else {}
   templates = views.templates(codebook, config.views)
   figures = [
-    _figure(number, event, paths.get(event.time_s), templates, config)
+    _figure(number, event, motions.get(event.time_s), templates, config)
     for number, event in enumerate(events, 1)
   ]
   return markup.tag('div', *figures, class_='gestures')
@@ -42,7 +42,7 @@ def draw(
 def _figure(
   number: int,
   event: receiver.Event,
-  path_px: np.ndarray | None,
+  motion: traces_lib.Motion | None,
   templates: views.Templates,
   config: config_lib.Config,
 ) -> markup.Markup:
@@ -64,18 +64,20 @@ def _figure(
     said = markup.tag('p', f'frame: {event.rejection}', class_='reason')
     reason = markup.join([reason, said])
   return markup.tag(
-    'figure', caption, _plot(event, path_px, templates),
-    _scores(event, config), reason, class_='unknown' if unknown else None,
+    'figure', caption, _plot(event, motion, templates),
+    _scores(event, motion, config.recognition), reason,
+    class_='unknown' if unknown else None,
   )  # fmt: skip
 
 
 def _plot(
   event: receiver.Event,
-  path_px: np.ndarray | None,
+  motion: traces_lib.Motion | None,
   templates: views.Templates,
 ) -> markup.Markup:
   """The normalised track over the best and the second template."""
-  if path_px is None or len(path_px) < 2 or not np.ptp(path_px, axis=0).any():
+  path_px = motion.path_px if motion else np.empty((0, 2))
+  if len(path_px) < 2 or not np.ptp(path_px, axis=0).any():
     return markup.tag('p', 'no track', class_='blank')
   track = gestures.normalise(path_px)
   errors = templates.errors(track)  # (4, V)
@@ -137,17 +139,21 @@ def _axes(x: plot.Scale, y: plot.Scale) -> markup.Markup:
 
 
 def _scores(
-  event: receiver.Event, config: config_lib.Config
+  event: receiver.Event,
+  motion: traces_lib.Motion | None,
+  limits: config_lib.Recognition,
 ) -> markup.Markup | None:
   """Every score with its limit and whether it keeps it."""
   scores = event.recognition
   if scores is None:
     return None
-  limits, small = config.recognition, scores.reason.startswith('span ')
-  span = f'{limits.min_span_px:g}'
-  if config.views is not None:
-    span = f'{limits.min_span_widths:g} widths'
-  rows = [('span, px', f'{scores.span_px:.1f}', f'\u2265 {span}', not small)]
+  rows = []
+  if motion is not None:  # It alone tells whether the width is known.
+    span_px, least_px = scores.span_px, limits.least_span_px(motion.width_px)
+    limit = f'\u2265 {least_px:.3g}'
+    if motion.width_px is not None:
+      limit += f' ({limits.min_span_widths:g} widths)'
+    rows = [('span, px', f'{span_px:.1f}', limit, span_px >= least_px)]
   if scores.best is not Symbol.UNKNOWN:  # Only then it was compared.
     rmse, margin, closure = scores.rmse, scores.margin, scores.closure
     least, most, open_ = limits.min_margin, limits.max_rmse, limits.max_closure

@@ -36,9 +36,10 @@ def write(folder: pathlib.Path) -> pathlib.Path:
     ArchiveError: if it is no run folder, or damaged.
     TraceError: the same, of its traces.
   """
+  wrong = AttributeError, KeyError, TypeError, receivers.ReceiverError
   try:
     whole = draw(archive.load(folder), videos(folder))
-  except (AttributeError, KeyError, TypeError) as error:
+  except wrong as error:
     raise archive.ArchiveError(
       f'{folder} holds data that no run left: {error!r}'
     ) from None
@@ -53,9 +54,7 @@ def videos(folder: pathlib.Path) -> list[str]:
 
 def draw(run: archive.Run, films: Sequence[str]) -> markup.Markup:
   """The page as text: equal data gives equal bytes."""
-  kind, _, changes = run.config['receiver'].partition(':')
-  default = receivers.RECEIVERS[kind].DEFAULT
-  config = receivers.configure(changes, default)
+  _, config = receivers.configured(run.config['receiver'])
   outcomes = run.result['outcomes']
   body = [
     _head(run),

@@ -9,6 +9,8 @@ from waggle_tasks.experiments.pages import markup, plot
 _SLOWEST_PX_S = 0.01  # What the logarithmic plot of speeds shows as rest.
 _TOP = 22.0
 
+_Tracking = config_lib.Tracking | config_lib.Differencing
+
 
 def draw(
   trace: traces_lib.Trace, end_s: float, config: config_lib.Config
@@ -20,11 +22,10 @@ def draw(
     end_s: Where the time axis ends.
     config: The limits that lines are drawn at.
   """
-  rest, flow = config.stillness, isinstance(config.motion, config_lib.Motion)
   offset_px = np.where(
-    trace.valid[:, None], trace.centre_px - anchor_px(trace), np.nan
+    trace.valid[:, None], trace.centre_px - _anchor_px(trace), np.nan
   )  # (T, 2)
-  near, far = _range(offset_px, rest.anchor_px)
+  near, far = _range(offset_px, config.stillness.anchor_px)
   speed = np.where(
     trace.valid, np.maximum(trace.speed_px_s, _SLOWEST_PX_S), np.nan
   )
@@ -49,10 +50,7 @@ def draw(
           plot.Line(offset_px[:, 0], 'a', 'right'),
           plot.Line(-offset_px[:, 1], 'b', 'up'),
         ],
-        plot.Limits(
-          [-rest.anchor_px, rest.anchor_px],
-          f'a null stays within {rest.anchor_px:g} px',
-        ),
+        _places(config, _width_px(trace)),
       ),
       panel(
         'speed', 'px/s, log', 110, _SLOWEST_PX_S, fastest,
@@ -60,23 +58,66 @@ def draw(
         _speeds(config.motion), logarithmic=True,
       ),
       panel(
-        'support', 'features' if flow else 'pixels', 60, 0.0, most,
-        [plot.Line(trace.support, 'a')],
-        plot.Limits(
-          [config.tracking.min_support],
-          f'at least {config.tracking.min_support}',
-        ) if flow else None,
+        'support', _support_unit(config.tracking), 60, 0.0, most,
+        [plot.Line(trace.support, 'a')], _supports(config.tracking),
       ),
       panel(
-        'f-b ratio' if flow else 'quality', '0 to 1', 60, 0.0, 1.05,
+        *_quality(config.tracking), 60, 0.0, 1.05,
         [plot.Line(trace.quality, 'a')],
-        plot.Limits(
-          [rest.null_quality], f'a null needs {rest.null_quality:g}'
-        ),
-        last=True,
+        _qualities(config.tracking, config.stillness), last=True,
       ),
     ]
   )  # fmt: skip
+
+
+def _places(config: config_lib.Config, width_px: float | None) -> plot.Limits:
+  """How far from its anchor the target may be at rest."""
+  rest_px, motion = config.stillness.anchor_px, config.motion
+  values, name = [-rest_px, rest_px], f'a null stays within {rest_px:g} px'
+  if isinstance(motion, config_lib.Excursion):
+    rule = f'{motion.radius_widths:g} widths, at least {motion.radius_px:g} px'
+    if width_px is not None:
+      away_px = motion.away_px(width_px)
+      values += [-away_px, away_px]
+      rule = f'{away_px:.1f} px ({rule})'
+    name = f'{name}, a motion leaves its rest by {rule}'
+  return plot.Limits(values, name)
+
+
+def _width_px(trace: traces_lib.Trace) -> float | None:
+  """How wide the target was at first, where that is known."""
+  return trace.motions[0].width_px if trace.motions else None
+
+
+def _support_unit(tracking: _Tracking) -> str:
+  flow = isinstance(tracking, config_lib.Tracking)
+  return 'features' if flow else 'pixels'
+
+
+def _supports(tracking: _Tracking) -> plot.Limits | None:
+  """The support of a valid frame, where there is such a limit."""
+  if not isinstance(tracking, config_lib.Tracking):
+    return None
+  return plot.Limits([tracking.min_support], f'at least {tracking.min_support}')
+
+
+def _quality(tracking: _Tracking) -> tuple[str, str]:
+  """What tracking quality is, and its unit."""
+  if not isinstance(tracking, config_lib.Tracking):
+    return 'share seen', 'of the target'
+  if tracking.forward_backward:
+    return 'f-b ratio', '0 to 1'
+  return 'kept ratio', 'no f-b check'
+
+
+def _qualities(tracking: _Tracking, rest: config_lib.Stillness) -> plot.Limits:
+  """The quality of a null and of a valid frame."""
+  flow = isinstance(tracking, config_lib.Tracking)
+  least = tracking.min_quality if flow else tracking.lost_share
+  return plot.Limits(
+    [rest.null_quality, least],
+    f'a null needs {rest.null_quality:g}, the track {least:g}',
+  )
 
 
 def _speeds(motion: config_lib.Motion | config_lib.Excursion) -> plot.Limits:
@@ -92,10 +133,14 @@ def _speeds(motion: config_lib.Motion | config_lib.Excursion) -> plot.Limits:
   )
 
 
-def anchor_px(trace: traces_lib.Trace) -> np.ndarray:  # (2,)
+def _anchor_px(trace: traces_lib.Trace) -> np.ndarray:  # (2,)
   """Where the target was first: the anchor of nulls."""
   if not trace.valid.any():
     return trace.centre_px[:1].sum(axis=0)
+  if _width_px(trace) is not None:
+    # Until its first motion, whose way begins at rest, it is known to be near
+    # the middle of the picture and no better.
+    return trace.motions[0].path_px[0]
   # The frame before the first valid one found the features that it follows.
   return trace.centre_px[max(int(trace.valid.argmax()) - 1, 0)]
 

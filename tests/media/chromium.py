@@ -19,6 +19,38 @@ _FLAGS = (
   '--autoplay-policy=no-user-gesture-required', '--hide-scrollbars',
 )  # fmt: skip
 _TIMEOUT_S = 30.0
+# Pairs of words in one drawing whose letters overlap by more than a pixel.
+OVERLAPS = """
+(() => {
+  const found = [];
+  for (const svg of document.querySelectorAll('svg')) {
+    const words = [...svg.querySelectorAll('text')].map(
+      (word) => [word.textContent, word.getBoundingClientRect()]);
+    for (const [k, [a, p]] of words.entries())
+      for (const [b, q] of words.slice(k + 1)) {
+        const width = Math.min(p.right, q.right) - Math.max(p.left, q.left);
+        // Lines of text have room above and below their letters.
+        const height = Math.min(p.bottom, q.bottom) - Math.max(p.top, q.top);
+        if (a && b && width > 1 && height > 5) found.push([a, b]);
+      }
+  }
+  return found;
+})()
+"""
+# Words that reach out of the card that they stand in.
+CLIPPED = """
+[...document.querySelectorAll('svg text, p, td, th, h1, h2, figcaption, pre')]
+  .filter((word) => word.textContent && word.getClientRects().length)
+  .filter((word) => {
+    const card = word.closest('figure, section, header');
+    const inner = word.getBoundingClientRect();
+    const outer = card.getBoundingClientRect();
+    const scroll = word.closest('.scroll');
+    if (scroll && scroll.scrollWidth > scroll.clientWidth) return false;
+    return inner.left < outer.left - 1 || inner.right > outer.right + 1;
+  })
+  .map((word) => word.textContent)
+"""
 
 
 def find() -> str | None:

@@ -8,7 +8,8 @@ from hypothesis import strategies as st
 import numpy as np
 import pytest
 
-from waggle_tasks.experiments import capture
+from waggle_tasks import scenario, sensor
+from waggle_tasks.experiments import capture, rollout
 
 SHAPE = (480, 640, 3)
 
@@ -86,6 +87,17 @@ def test_it_holds_the_images_that_a_receiver_took_and_no_more(
   images = [image.max() for image, _ in capture.read(blind)]
   assert len(images) == len(recorded.rollout.times_s)
   assert max(images) == 0
+
+
+def test_images_that_come_again_are_held_once(tmp_path: pathlib.Path) -> None:
+  spoils = sensor.Sensor(dropped_share=0.5, late_frames=2)
+  scene = scenario.Scenario(observers=1, duration_s=1.0, sensor=spoils)
+  with capture.Recorder(tmp_path) as recorder:
+    played = rollout.run(scene, 'klt', [recorder])
+  (path,) = capture.paths(tmp_path)
+  times_s = [time_s for _, time_s in capture.read(path)]
+  assert times_s == list(played.traces['observer_1'].times_s)
+  assert 5 < len(times_s) < 20
 
 
 @settings(max_examples=60, deadline=None)

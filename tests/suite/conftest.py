@@ -1,11 +1,10 @@
 """A small suite, its results when nothing disturbs it, and what to compare."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 import dataclasses
 import json
 import pathlib
 import shutil
-import time
 
 import pytest
 
@@ -123,36 +122,3 @@ def blink(blink_reference: Own, tmp_path: pathlib.Path) -> Own:
 def fresh_blink(tmp_path: pathlib.Path) -> Own:
   """The same suite before it was run."""
   return Own(BLINK, tmp_path / 'results')
-
-
-def _session(leader: int) -> dict[int, str]:
-  found = {}
-  for path in pathlib.Path('/proc').glob('[0-9]*'):
-    try:
-      fields = (path / 'stat').read_text().rpartition(')')[2].split()
-      words = (path / 'cmdline').read_text()
-    except (FileNotFoundError, ProcessLookupError):
-      continue
-    # The dead stay listed until somebody reaps them.
-    if int(fields[3]) == leader and fields[0] not in 'ZX':
-      found[int(path.name)] = words
-  return found
-
-
-@pytest.fixture
-def session() -> Callable[[int], dict[int, str]]:
-  """The living processes of a session, by id, and their command lines."""
-  return _session
-
-
-def _wait_until(condition: Callable[[], object], limit_s: float = 60.0) -> None:
-  end_s = time.monotonic() + limit_s
-  while not condition():
-    assert time.monotonic() < end_s, f'not within {limit_s:g} s'
-    time.sleep(0.01)
-
-
-@pytest.fixture
-def wait_until() -> Callable[..., None]:
-  """Waits for a condition; fails when it does not come about."""
-  return _wait_until

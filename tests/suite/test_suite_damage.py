@@ -8,7 +8,11 @@ import re
 import pytest
 
 from waggle_tasks import suites
-from waggle_tasks.experiments import provenance, suite_case, suite_runner
+from waggle_tasks.experiments import (
+  provenance,
+  records,
+  suite_case,
+)
 
 ELSEWHERE = 'from another configuration, other sources or other versions'
 
@@ -110,7 +114,7 @@ def test_an_identity_follows_all_that_decides_a_result(
     changes: dict[str, object], receiver: str = 'klt', digest: str = 'a'
   ) -> str:
     (case,) = suites.from_rows([{'name': 'a', **changes}])
-    return suite_case.identity(case, receiver, digest)
+    return records.identity(case.scene, receiver, digest)
 
   first = identify({})
   assert identify({'name': 'b', 'label': 'x', 'group': 'g'}) == first
@@ -154,7 +158,7 @@ def test_sources_that_change_meanwhile_are_an_error(
   seen = [here, here | {'waggle_tasks/new.py': '0'}]
   monkeypatch.setattr(provenance, 'source_hashes', lambda: seen.pop(0))
   with pytest.raises(
-    suite_runner.SourceError, match='sources must not change while a suite runs'
+    provenance.SourceError, match='sources must not change while a suite runs'
   ):
     fresh_blink.run()
   assert not (fresh_blink.folder / 'results.jsonl').exists()

@@ -54,6 +54,16 @@ def integer(
     )
 
 
+def switch(field: str, value: bool, error: type[errors.WaggleError]) -> None:
+  """Refuses a value that is neither True nor False.
+
+  Raises:
+    WaggleError: of type `error`, naming the field, the rule and the value.
+  """
+  if not isinstance(value, bool):
+    raise error(f'`{field}` must be True or False: got {value!r}')
+
+
 def choice(
   field: str,
   value: str,

@@ -3,8 +3,14 @@
 import dataclasses
 import enum
 
+from waggle_tasks import errors
+from waggle_tasks.protocol import checks
 from waggle_tasks.protocol import payload as payload_lib
 from waggle_tasks.protocol.symbols import BITS, Symbol
+
+
+class FrameError(errors.WaggleError):
+  """A rule of frames that is neither kept nor dropped."""
 
 
 def motions(payload: payload_lib.Payload) -> tuple[Symbol, ...]:
@@ -51,19 +57,42 @@ class Rejection:
 
 
 @dataclasses.dataclass(frozen=True)
+class Rules:
+  """Which nulls a frame must have; all of them, in the paper.
+
+  The null before START and the order of the motions are always demanded.
+
+  Attributes:
+    separators: Whether a null must come between two motions; else nulls
+      there are passed over, however many.
+    final_null: Whether a message is complete with the null after END; else it
+      is with END.
+  """
+
+  separators: bool = True
+  final_null: bool = True
+
+  def __post_init__(self) -> None:
+    for field in dataclasses.fields(self):
+      checks.switch(field.name, getattr(self, field.name), FrameError)
+
+
+@dataclasses.dataclass(frozen=True)
 class Parser:
   """A frame parser as a value: `step` returns the next one and an outcome.
 
-  A message is accepted if and only if the last 17 events are a whole frame
-  (paper, section 'Motion alphabet and message framing').
+  By the paper's rules a message is accepted if and only if the last 17 events
+  are a whole frame (section 'Motion alphabet and message framing').
 
   Attributes:
     state: What it waits for.
     bits: The bits read since START.
+    rules: Which nulls it demands.
   """
 
   state: State = State.LEAD_NULL
   bits: str = ''
+  rules: Rules = Rules()
 
   def step(self, symbol: Symbol) -> tuple['Parser', Message | Rejection | None]:
     """Takes one event.
@@ -78,31 +107,52 @@ class Parser:
     null = symbol is Symbol.NULL
     match self.state:
       case State.LEAD_NULL if null:
-        return Parser(State.START), None
+        return self._at(State.START), None
       case State.START if symbol is Symbol.START:
-        return Parser(State.SEPARATOR), None
+        return self._after_motion(''), None
       case State.START if null:
         return self, None
       case State.SEPARATOR if null:
-        whole = len(self.bits) == payload_lib.NUM_BITS
-        return Parser(State.END if whole else State.BIT, self.bits), None
+        return self._at(self._next_motion(self.bits), self.bits), None
+      case State.BIT | State.END if null and not self.rules.separators:
+        return self, None
       case State.BIT if symbol in BITS:
-        return Parser(State.SEPARATOR, self.bits + symbol), None
+        return self._after_motion(self.bits + symbol), None
+      case State.END if symbol is Symbol.END and self.rules.final_null:
+        return self._at(State.FINAL_NULL, self.bits), None
       case State.END if symbol is Symbol.END:
-        return Parser(State.FINAL_NULL, self.bits), None
+        return self._at(State.LEAD_NULL), self._message()
       case State.FINAL_NULL if null:
-        payload = payload_lib.Payload.from_bits(self.bits)
-        return Parser(State.START), Message(payload)
+        return self._at(State.START), self._message()
     return self._restart(symbol), Rejection(self._reason(symbol))
 
+  def _at(self, state: State, bits: str = '') -> 'Parser':
+    return Parser(state, bits, self.rules)
+
+  def _after_motion(self, bits: str) -> 'Parser':
+    """What comes after START or a bit."""
+    if self.rules.separators:
+      return self._at(State.SEPARATOR, bits)
+    return self._at(self._next_motion(bits), bits)
+
+  def _next_motion(self, bits: str) -> State:
+    return State.END if len(bits) == payload_lib.NUM_BITS else State.BIT
+
+  def _message(self) -> Message:
+    return Message(payload_lib.Payload.from_bits(self.bits))
+
   def _restart(self, symbol: Symbol) -> 'Parser':
-    """Where the next frame can begin, given the event that broke this one."""
+    """Where the next frame can begin, given the event that broke this one.
+
+    A START can begin it after a null; without separators, also right after
+    START or a bit of the frame that it breaks.
+    """
     if symbol is Symbol.NULL:
-      return Parser(State.START)
+      return self._at(State.START)
     null_came_before = self.state in (State.START, State.BIT, State.END)
     if symbol is Symbol.START and null_came_before:
-      return Parser(State.SEPARATOR)
-    return Parser()
+      return self._after_motion('')
+    return self._at(State.LEAD_NULL)
 
   def _reason(self, symbol: Symbol) -> str:
     expected = {

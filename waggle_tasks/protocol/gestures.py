@@ -6,7 +6,7 @@ import itertools
 import numpy as np
 
 from waggle_tasks import errors
-from waggle_tasks.protocol import checks
+from waggle_tasks.protocol import checks, minimum_jerk
 from waggle_tasks.protocol.symbols import MOTIONS, Symbol
 
 # Two gestures whose normalised paths are closer than this RMSE cannot both
@@ -102,6 +102,30 @@ class Gesture:
   def leg_s(self) -> float:
     """Seconds from one corner to the next."""
     return self.duration_s / (len(self) - 1)
+
+  @property
+  def end_m(self) -> np.ndarray:
+    """(2,) where it comes to rest: the hover point."""
+    return np.zeros(2)
+
+  def motion(
+    self, elapsed_s: float
+  ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Minimum jerk from corner to corner.
+
+    Args:
+      elapsed_s: Seconds since the gesture began, up to its duration.
+
+    Returns:
+      Offset from the hover point in m, velocity in m/s and acceleration in
+      m/s^2, each (2,).
+    """
+    leg = int(elapsed_s / self.leg_s)
+    leg = min(leg, len(self) - 2)  # Rounding at the very end.
+    corners = np.array(self.corners_m[leg : leg + 2])
+    return minimum_jerk.between(
+      *corners, elapsed_s - leg * self.leg_s, self.leg_s
+    )
 
   def image_path(self) -> np.ndarray:
     """(corners, 2) path as a frontal camera sees it: x right, y down."""

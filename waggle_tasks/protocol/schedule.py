@@ -1,11 +1,38 @@
 """A message laid out in time, and where the dance is at any moment."""
 
+from collections.abc import Iterable
 import dataclasses
+from typing import Protocol
 
 import numpy as np
 
-from waggle_tasks.protocol import gestures, minimum_jerk, timing
+from waggle_tasks.protocol import gestures, timing
 from waggle_tasks.protocol.symbols import Symbol
+
+
+class Path(Protocol):
+  """A smooth way from rest to rest: a gesture, or any other flight.
+
+  Attributes:
+    symbol: The symbol it stands for; UNKNOWN when it is none.
+    duration_s: How long it takes.
+    end_m: Where it comes to rest: the offset from the hover point, (2,) or
+      (3,) as in `motion`.
+  """
+
+  symbol: Symbol
+  duration_s: float
+  end_m: np.ndarray
+
+  def motion(
+    self, elapsed_s: float
+  ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Offset in m, velocity and acceleration, `elapsed_s` after its begin.
+
+    Each is (2,), x right and z up in the frontal plane, or (3,) with the way
+    out of the plane, away from the audience.
+    """
+    ...
 
 
 @dataclasses.dataclass(frozen=True)
@@ -13,11 +40,11 @@ class Slot:
   """One gesture's place in time.
 
   Attributes:
-    gesture: What is flown.
+    gesture: What is flown; any smooth path will do.
     begin_s: When it begins, in seconds of simulation time.
   """
 
-  gesture: gestures.Gesture
+  gesture: Path
   begin_s: float
 
   @property
@@ -49,25 +76,24 @@ class Schedule:
     return Symbol.NULL
 
   def motion(self, time_s: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Where the dance is: minimum jerk from corner to corner.
+    """Where the dance is.
 
     Args:
       time_s: Simulation time in seconds.
 
     Returns:
       Offset from the hover point in m, velocity in m/s and acceleration in
-      m/s^2, each (2,): x right and z up in the frontal plane.
+      m/s^2, each of the shape of the path under way: see `Path.motion`.
+      Between two paths it rests where the last one ended.
     """
+    place = np.zeros(2)
     for slot in self.slots:
-      if slot.begin_s <= time_s < slot.end_s:
-        gesture = slot.gesture
-        leg = int((time_s - slot.begin_s) / gesture.leg_s)
-        leg = min(leg, len(gesture) - 2)  # Rounding at the very end.
-        corners = np.array(gesture.corners_m[leg : leg + 2])
-        elapsed_s = time_s - slot.begin_s - leg * gesture.leg_s
-        return minimum_jerk.between(*corners, elapsed_s, gesture.leg_s)
-    rest = np.zeros(2)
-    return rest, rest, rest
+      if time_s < slot.begin_s:
+        break
+      if time_s < slot.end_s:
+        return slot.gesture.motion(time_s - slot.begin_s)
+      place = slot.gesture.end_m
+    return place, np.zeros(len(place)), np.zeros(len(place))
 
 
 def broadcast(
@@ -85,9 +111,14 @@ def broadcast(
   Returns:
     The schedule; hovering follows its last slot.
   """
+  return lay_out([codebook[symbol] for symbol in symbols], pauses)
+
+
+def lay_out(paths: Iterable[Path], pauses: timing.Timing) -> Schedule:
+  """Lays paths out in time, one after another, with the agreed pauses."""
   slots = []
   begin_s = pauses.initial_hover_s
-  for symbol in symbols:
-    slots.append(Slot(codebook[symbol], begin_s))
+  for path in paths:
+    slots.append(Slot(path, begin_s))
     begin_s = slots[-1].end_s + pauses.pause_s
   return Schedule(tuple(slots))

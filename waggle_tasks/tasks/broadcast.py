@@ -99,6 +99,10 @@ class Broadcast(composer.Task):
       random_state,
     )
     self._homes = dict(zip(self._vehicles, poses, strict=True))
+    drift = self._parts.drift
+    self._wanders = {'performer': drift.performer(random_state)}
+    for name in self._observers:
+      self._wanders[name] = drift.observer(random_state)
     for name, pose in self._homes.items():
       half_rad = pose.yaw_rad / 2
       self._vehicles[name].set_pose(
@@ -163,18 +167,30 @@ class Broadcast(composer.Task):
     motion = self.performer.motion(
       np.array(home.position_m), home.yaw_rad, middle_s
     )
-    self._controllers['performer'].command(physics, *motion)
+    self._command(physics, 'performer', motion)
     wanted = actions.read(action, [*self._observers])
     self._judge(wanted, self.positions_m(physics), time_s)
     for gate, each in zip(self._gates, wanted, strict=True):
       followed = gate.follow(each, time_s)
-      self._controllers[gate.name].command(
-        physics,
+      motion = (
         followed.position_m,
         followed.velocity_mps,
         followed.acceleration_mps2,
-        followed.turn_rad,
       )
+      self._command(physics, gate.name, motion, followed.turn_rad)
+
+  def _command(
+    self,
+    physics: mjcf.Physics,
+    name: str,
+    motion: Sequence[np.ndarray],  # Position, velocity, acceleration, (3,) each
+    turn_rad: float = 0.0,
+  ) -> None:
+    """Commands a vehicle to where it drifts from where it should be."""
+    middle_s = (self._frame + 0.5) * timing.FRAME_S
+    drift = self._wanders[name].at(middle_s)
+    moved = [each + off[:3] for each, off in zip(motion, drift, strict=True)]
+    self._controllers[name].command(physics, *moved, turn_rad + drift[0][3])
 
   def _judge(
     self,
@@ -199,9 +215,13 @@ class Broadcast(composer.Task):
     reasons = safety.refuse(
       due, others, positions_m, self._parts.minimum_spacing_m
     )
-    for gate in self._gates:
+    drifts_m = self.drifts_m()
+    for gate, each in zip(self._gates, self._progress, strict=True):
       if gate.name in due:
         gate.judge(self._requests.pop(gate.name), reasons.get(gate.name))
+        # A displacement counts from where it was read, drift and all; its
+        # height is the agreed one.
+        each.shift(drifts_m[gate.name] * (1.0, 1.0, 0.0))
 
   def after_step(
     self, physics: mjcf.Physics, random_state: np.random.RandomState
@@ -212,12 +232,17 @@ class Broadcast(composer.Task):
     self._contacts = self._find_contacts(physics)
     positions_m = self.positions_m(physics)
     velocities_mps = self.velocities_mps(physics)
+    drifts = self._drifts()
     authorised = (
       self.sends_message
       and self._frame * timing.FRAME_S >= self.performer.end_s
     )
     self._rewards = [
-      each.update(positions_m[name], velocities_mps[name], authorised)
+      each.update(
+        positions_m[name] - drifts[name][0],
+        velocities_mps[name] - drifts[name][1],
+        authorised,
+      )
       for name, each in zip(self._observers, self._progress, strict=True)
     ]
 
@@ -245,6 +270,21 @@ class Broadcast(composer.Task):
     """True velocity of every vehicle, (3,) world m/s, by its name."""
     velocities = np.array(physics.bind(self._joints).qvel).reshape(-1, 6)[:, :3]
     return dict(zip(self._vehicles, velocities, strict=True))
+
+  def drifts_m(self) -> dict[str, np.ndarray]:
+    """How far each vehicle is taken from its reference, (3,), by its name.
+
+    What a vehicle was told to do is judged without it: nobody is told of it.
+    """
+    return {name: place for name, (place, _) in self._drifts().items()}
+
+  def _drifts(self) -> dict[str, tuple[np.ndarray, np.ndarray]]:
+    """Drift and its velocity now, (3,) each, by vehicle."""
+    time_s, out = self._frame * timing.FRAME_S, {}
+    for name, wander in self._wanders.items():
+      place, rate, _ = wander.at(time_s)
+      out[name] = place[:3], rate[:3]
+    return out
 
   @property
   def contacts(self) -> tuple[tuple[str, str], ...]:

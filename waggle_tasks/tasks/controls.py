@@ -3,7 +3,9 @@
 Paper, section 'Controls and supplemental suite'.
 """
 
-from waggle_tasks.entities import eye
+import dataclasses
+
+from waggle_tasks import sensor
 from waggle_tasks.protocol import schedule
 from waggle_tasks.tasks import broadcast
 from waggle_tasks.tasks import parts as parts_lib
@@ -14,6 +16,15 @@ class NoSend(broadcast.Broadcast):
 
   def _begin_dance(self) -> None:
     self.performer.perform(schedule.Schedule(()))
+
+
+class Decoy(broadcast.Broadcast):
+  """The performer flies, and it is no message."""
+
+  @property
+  def sends_message(self) -> bool:
+    """Never."""
+    return False
 
 
 class BlackInput(broadcast.Broadcast):
@@ -27,7 +38,13 @@ class BlackInput(broadcast.Broadcast):
       number: Which observer sees nothing, counted from 1.
     """
     super().__init__(parts)
-    self.observers[number - 1].corruptor = lambda: eye.black
+    blind = self.observers[number - 1]
+    blind.sensor = dataclasses.replace(
+      blind.sensor,
+      blackout_s=0.0,
+      blackout_length_s=sensor.ALWAYS_S,
+      blackout_share=1.0,
+    )
 
 
 class Interrupted(broadcast.Broadcast):

@@ -6,6 +6,7 @@ import dataclasses
 from waggle_tasks.arenas import flight_room, layouts
 from waggle_tasks.entities import observer, performer
 from waggle_tasks.protocol import payload, schedule
+from waggle_tasks.tasks import drift as drift_lib
 from waggle_tasks.tasks import safety
 
 
@@ -24,6 +25,7 @@ class Parts:
     units: The agreed heading step and distance unit.
     jitter_m: Bound of each vehicle's initial x and y offset.
     minimum_spacing_m: Smallest distance allowed between two vehicles.
+    drift: How far vehicles wander from their references.
   """
 
   room: flight_room.FlightRoom
@@ -36,3 +38,4 @@ class Parts:
   units: payload.Units = payload.Units()
   jitter_m: float = 0.0
   minimum_spacing_m: float = safety.MINIMUM_SPACING_M
+  drift: drift_lib.Drift = drift_lib.Drift()

@@ -38,8 +38,8 @@ class Progress:
     """Takes one frame's truth.
 
     Args:
-      position_m: (3,) true position.
-      velocity_mps: (3,) true velocity.
+      position_m: (3,) true position, less the drift that it was given.
+      velocity_mps: (3,) true velocity, the same.
       authorised: Whether a whole message has been flown.
 
     Returns:
@@ -64,6 +64,11 @@ class Progress:
       self.arrived = True
       return 1.0
     return 0.0
+
+  def shift(self, offset_m: np.ndarray) -> None:
+    """Moves the target by (3,) metres."""
+    if self.target_m is not None:
+      self.target_m = self.target_m + offset_m
 
   @property
   def done(self) -> bool:

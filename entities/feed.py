@@ -1,0 +1,116 @@
+"""How a camera's pictures come to an observer: spoilt, late, or not at all."""
+
+import collections
+import dataclasses
+
+import numpy as np
+
+from waggle_tasks import sensor
+from waggle_tasks.entities import corruptors, renderer
+from waggle_tasks.protocol import timing
+
+_SHAPE = (renderer.HEIGHT, renderer.WIDTH, 3)
+
+
+@dataclasses.dataclass(eq=False)
+class _Picture:
+  """What the camera took in one frame, once somebody has asked for it."""
+
+  pixels: np.ndarray | None = None
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class _Message:
+  """A picture and the time that it is told to be of."""
+
+  picture: _Picture
+  time_s: float
+
+
+class Feed:
+  """The images and times of one observer in one episode.
+
+  `image` and `time_s` are composer corruptors of two observables. Both speak
+  of the message that `advance` chose for the frame, so that they agree.
+  """
+
+  def __init__(
+    self, chosen: sensor.Sensor, random_state: np.random.RandomState
+  ) -> None:
+    """Makes the feed, before the first frame.
+
+    Args:
+      chosen: What spoils it.
+      random_state: What its own draws begin with.
+    """
+    seed = int(random_state.randint(2**32, dtype=np.uint32))
+    # Each kind draws from its own, so that none of them changes another.
+    light, noise, self._draws = (
+      np.random.RandomState([seed, kind]) for kind in range(3)
+    )
+    self._chosen = chosen
+    self._light = corruptors.Light(chosen, light)
+    self._blur = corruptors.Blur(chosen.exposure_s)
+    self._noise = None
+    if chosen.noise_sigma or chosen.photons:
+      self._noise = corruptors.Noise(
+        chosen.noise_sigma, chosen.photons, _SHAPE, noise
+      )
+    self._frame = self._exposed_frame = -1
+    # What is on its way, the oldest first; the first one never waits.
+    self._sent = collections.deque(maxlen=chosen.late_frames + 1)
+    self._taken = self._delivered = None
+
+  def advance(self, time_s: float) -> None:
+    """Begins a frame and decides what comes in it.
+
+    Args:
+      time_s: The time of the picture that is taken now.
+    """
+    self._frame += 1
+    chosen = self._chosen
+    repeats, drops = self._draws.random_sample(2) < (
+      chosen.repeated_share,
+      chosen.dropped_share,
+    )
+    frozen = self._during(chosen.freeze_s, chosen.freeze_length_s, 1)
+    if self._taken is None or not (repeats or frozen):
+      self._taken = _Picture()
+    self._sent.append(_Message(self._taken, time_s))
+    if self._delivered is None or not drops:
+      self._delivered = self._sent[0]
+
+  def image(
+    self,
+    image: np.ndarray,  # (480, 640, 3) uint8
+    random_state: np.random.RandomState,
+  ) -> np.ndarray:
+    """Takes this frame's picture and returns the one that comes."""
+    del random_state
+    if self._exposed_frame < self._frame:  # Composer may ask again.
+      self._exposed_frame = self._frame
+      self._light(image, self._frame)
+      self._blur(image)
+      if self._taken.pixels is None:
+        self._read_out(image)
+        self._taken.pixels = image
+    return self._delivered.picture.pixels
+
+  def time_s(
+    self, time_s: np.ndarray, random_state: np.random.RandomState
+  ) -> np.ndarray:
+    """The time of the image that comes in this frame, ()."""
+    del time_s, random_state
+    return self._delivered.time_s
+
+  def _read_out(self, image: np.ndarray) -> None:
+    chosen = self._chosen
+    if self._noise is not None:
+      self._noise(image)
+    if self._during(chosen.blackout_s, chosen.blackout_length_s):
+      corruptors.blacken(image, chosen.blackout_share)
+
+  def _during(self, begin_s: float, length_s: float, after: int = 0) -> bool:
+    """Whether this frame is in a stretch, or in what follows its first."""
+    begin = timing.frames(begin_s) + after
+    return begin <= self._frame < timing.frames(begin_s + length_s)

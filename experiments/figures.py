@@ -1,0 +1,87 @@
+"""The envelope as pictures for papers, by matplotlib."""
+
+from collections.abc import Sequence
+import importlib.util
+import math
+import pathlib
+
+import numpy as np
+
+from waggle_tasks.experiments import envelope, heat, palette
+
+NAMES = 'envelope.svg', 'envelope.png'
+MISSING = (
+  'Pictures of the envelope need matplotlib:'
+  " pip install 'waggle-tasks[analysis]'; then `waggle sweep --summary FOLDER`."
+)
+_CELL_IN = 0.62, 0.42  # Width and height of a cell.
+_MARGIN_IN = 1.3, 1.15
+_DPI = 150
+
+
+def can_draw() -> bool:
+  """Whether matplotlib is here."""
+  return importlib.util.find_spec('matplotlib') is not None
+
+
+def draw(
+  panels: Sequence[envelope.Panel], folder: pathlib.Path
+) -> list[pathlib.Path]:
+  """Writes every map of an envelope into one picture, twice.
+
+  Args:
+    panels: The maps.
+    folder: Where `NAMES` are put.
+
+  Returns:
+    The files.
+  """
+  import matplotlib as mpl
+  from matplotlib import figure as figure_lib
+
+  columns = min(len(panels), 2)
+  lines = math.ceil(len(panels) / columns)
+  width = max(len(panels[0].acrosses), 4) * _CELL_IN[0] + _MARGIN_IN[0]
+  height = len(panels[0].downs) * _CELL_IN[1] + _MARGIN_IN[1]
+  # Letters stay letters, and equal maps give equal files.
+  settings = {'svg.fonttype': 'none', 'svg.hashsalt': 'waggle'}
+  with mpl.rc_context(settings):
+    figure = figure_lib.Figure(
+      (columns * width + 1, lines * height), layout='constrained'
+    )
+    axes = figure.subplots(lines, columns, squeeze=False)
+    for panel, axis in zip(panels, axes.flat, strict=False):
+      image = _panel(panel, axis)
+    for axis in axes.flat[len(panels) :]:
+      axis.set_axis_off()
+    bar = figure.colorbar(image, ax=axes, shrink=0.8)
+    bar.set_label('share of exposures that were right')
+    paths = [folder / name for name in NAMES]
+    figure.savefig(paths[0], metadata={'Date': None})
+    figure.savefig(paths[1], dpi=_DPI)
+  return paths
+
+
+def _panel(panel: envelope.Panel, axis: object) -> object:
+  """Draws one map and returns its image."""
+  from matplotlib import colors
+
+  shares = np.full((len(panel.downs), len(panel.acrosses)), np.nan)
+  for i, down in enumerate(panel.downs):
+    for j, across in enumerate(panel.acrosses):
+      if rows := panel.cells.get((down, across)):
+        shares[i, j], words = heat.share(rows)
+        ink = palette.ink(heat.colour(shares[i, j]))
+        axis.text(j, i, words, ha='center', va='center', color=ink, size=8)
+  colours = colors.LinearSegmentedColormap.from_list('share', heat.STOPS)
+  image = axis.imshow(shares, colours, vmin=0, vmax=1, aspect='auto')
+  axis.set_xticks(range(len(panel.acrosses)), map(heat.label, panel.acrosses))
+  axis.set_yticks(range(len(panel.downs)), map(heat.label, panel.downs))
+  axis.hlines(
+    np.arange(len(panel.downs)) - 0.5, -0.5, shares.shape[1] - 0.5, 'w'
+  )
+  axis.vlines(np.arange(shares.shape[1]) - 0.5, -0.5, len(shares) - 0.5, 'w')
+  axis.set_xlabel(heat.axis(panel.across))
+  axis.set_ylabel(heat.axis(panel.down))
+  axis.set_title(heat.title(panel), size=10)
+  return image

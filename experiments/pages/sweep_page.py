@@ -1,0 +1,166 @@
+"""The page of a sweep: its envelope, its limits and all that failed."""
+
+from collections.abc import Sequence
+import pathlib
+
+from waggle_tasks.experiments import (
+  envelope,
+  heat,
+  provenance,
+  scenario_fields,
+  statistics,
+  sweep_fit,
+  sweep_tables,
+)
+from waggle_tasks.experiments.pages import document, heat_map, markup
+
+_MOST_FAILURES = 500  # Listed with their commands; results.csv has all.
+
+tag = markup.tag
+
+
+def write(
+  folder: pathlib.Path, rows: Sequence[envelope.Row], origin: dict | None
+) -> pathlib.Path:
+  """Makes the page of a sweep and returns its path.
+
+  Args:
+    folder: Where it is put.
+    rows: The results of one sweep or of several.
+    origin: provenance.json of the sweep; None for several.
+  """
+  return document.save(folder, draw(rows, folder.resolve().name, origin))
+
+
+def draw(
+  rows: Sequence[envelope.Row], name: str, origin: dict | None
+) -> markup.Markup:
+  """The page as text.
+
+  Args:
+    rows: The results.
+    name: What the sweep is called.
+    origin: See `write`.
+  """
+  maps = envelope.panels(rows)
+  body = [
+    _head(rows, name),
+    _envelope(maps),
+    _failures(envelope.failures(rows)),
+    *map(_table, maps),
+    _origin(origin),
+  ]
+  return document.page(f'{name} \u2013 waggle sweep', body)
+
+
+def _head(rows: Sequence[envelope.Row], name: str) -> markup.Markup:
+  got = envelope.count(rows)
+  misled = got.wrong + got.unauthorised
+  receivers = ', '.join(sorted({row['receiver'] for row in rows}))
+  return tag(
+    'header',
+    tag('h1', name),
+    tag(
+      'p',
+      document.chip(not got.wrong, f'{got.wrong} wrong messages'),
+      ' ',
+      document.chip(
+        not got.unauthorised, f'{got.unauthorised} unauthorised motions'
+      ),
+      class_='chips',
+    ),
+    *(tag('p', line) for line in sweep_tables.totals(rows)),
+    tag(
+      'p',
+      f'receiver {receivers}; {len(rows)} cases;'
+      f' {sum(row["simulated_s"] for row in rows):.0f} s simulated',
+      class_='faint',
+    ),
+    class_='failed' if misled else None,
+  )
+
+
+def _envelope(maps: Sequence[envelope.Panel]) -> markup.Markup:
+  figures = [
+    tag(
+      'figure',
+      tag('figcaption', tag('b', heat.title(each))),
+      heat_map.draw(each),
+    )
+    for each in maps
+  ]
+  fits = [tag('p', line) for each in maps for line in sweep_fit.lines(each)]
+  return tag(
+    'section',
+    tag('h2', 'The envelope'),
+    tag('div', *figures, class_='maps'),
+    tag(
+      'p',
+      'each cell: exposures that were right, of all; blank cells were not'
+      ' flown',
+      class_='faint',
+    ),
+    tag('p', sweep_tables.weak_cells(maps)[0].rstrip(':.') + '.'),
+    *fits,
+  )
+
+
+def _failures(failures: Sequence[envelope.Failure]) -> markup.Markup | None:
+  if not failures:
+    return None
+  items = []
+  for each in failures[:_MOST_FAILURES]:
+    words = tag('b', f'{each.row["case"]}, {each.observer}')
+    items.append(tag('li', words, f': {each.reason}', tag('pre', repeat(each))))
+  more = len(failures) - len(items)
+  return tag(
+    'section',
+    tag('h2', 'What failed'),
+    tag('ul', *items),
+    tag('p', f'and {more} more, see results.csv') if more else None,
+    class_='failed',
+  )
+
+
+def repeat(failure: envelope.Failure) -> str:
+  """The shell line that flies a failure's case again, with its report."""
+  row = failure.row
+  given = [f'--receiver={row["receiver"]}']
+  given += scenario_fields.flags(row['scenario'])
+  return provenance.command_line('broadcast', given)
+
+
+def _table(panel: envelope.Panel) -> markup.Markup:
+  """Every cell of a map with its limits."""
+  lines = []
+  for (down, across), rows in panel.cells.items():
+    got = envelope.count(rows)
+    low, high = statistics.clopper_pearson(got.right, got.exposures)
+    lines.append(
+      [
+        heat.label(down), heat.label(across), f'{got.right}/{got.exposures}',
+        f'{low:.1%} to {high:.1%}', got.wrong, got.unauthorised,
+      ]
+    )  # fmt: skip
+  header = (
+    heat.axis(panel.down), heat.axis(panel.across), 'right',
+    '95 % interval (Clopper-Pearson)', 'wrong', 'unauthorised',
+  )  # fmt: skip
+  return tag(
+    'section',
+    tag('h2', 'Every cell', panel.fixed and f': {heat.title(panel)}'),
+    markup.table(header, lines),
+  )
+
+
+def _origin(origin: dict | None) -> markup.Markup | None:
+  if origin is None:
+    return None
+  versions = ', '.join(f'{n} {v}' for n, v in origin['versions'].items())
+  return tag(
+    'section',
+    tag('h2', 'How it was made'),
+    tag('pre', origin['command']),
+    tag('p', f'{origin["renderer"]}; {versions}', class_='faint'),
+    tag('p', f'sources {origin["source_digest"]}', class_='faint'),
+  )

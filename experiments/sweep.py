@@ -1,0 +1,116 @@
+"""Flies a scenario over a grid of its fields and maps where it succeeds.
+
+Every combination of the values of each --grid is a cell; each cell is flown
+--repeats times, every time with a seed of its own and, with --payload=random,
+a payload of its own. All other flags fix the scenario. Leaves results.jsonl,
+results.csv and the map, as text, pictures and a page. Ended at any moment, the
+same command goes on where it was. Exit status 0 when no observer read a wrong
+message or moved without a right one, 1 otherwise, 2 on bad input. --summary
+flies nothing and makes the map of the sweeps in FOLDERs, finished or not.
+"""
+
+from collections.abc import Sequence
+import functools
+import pathlib
+import sys
+
+from absl import flags
+
+from waggle_tasks.agents import receivers
+from waggle_tasks.experiments import (
+  cluster,
+  envelope,
+  figures,
+  launch,
+  pool,
+  provenance,
+  scenario_flags,
+  sweep_cases,
+  sweep_output,
+  sweep_runner,
+  sweep_tables,
+)
+
+ARGUMENTS = '[FOLDER ...]'
+_MOST = 20  # Lines of a list that are printed; summary.txt has all.
+
+scenario_flags.define()
+_GRID = flags.DEFINE_multi_string(
+  'grid', [], 'A field of the scenario and its values, NAME=VALUE,...; again'
+  ' for another. payload=all stands for all 64.',
+)  # fmt: skip
+_REPEATS = flags.DEFINE_integer('repeats', 1, 'Episodes of each cell.')
+_RECEIVER = flags.DEFINE_string(
+  'receiver',
+  'klt',
+  f'How observers read images. One of {", ".join(receivers.RECEIVERS)}.',
+)
+_WORKERS = flags.DEFINE_integer(
+  'workers', None, 'How many processes; unset, one for each core.'
+)
+_SCHEDULER = flags.DEFINE_string(
+  'scheduler', None, 'Fly on a Dask cluster: tcp://HOST:PORT of its scheduler,'
+  ' or the JSON file that it wrote.',
+)  # fmt: skip
+_OUTPUT = flags.DEFINE_string(
+  'output', None, 'Result folder; unset, runs/sweep-RECEIVER-FIELDS.'
+)
+_SUMMARY = flags.DEFINE_boolean(
+  'summary', False, 'Only show what is in the FOLDERs.'
+)
+
+
+def main(argv: Sequence[str]) -> int:
+  """Runs or shows sweeps and returns the exit status."""
+  if _SUMMARY.value:
+    return _summary(argv[1:])
+  if argv[1:]:
+    raise flags.Error(f'takes only flags, --name=value: got {argv[1]!r}.')
+  grid = sweep_cases.grid(_GRID.value)
+  cases = sweep_cases.cases(grid, scenario_flags.values(), _REPEATS.value)
+  receivers.make(_RECEIVER.value, cases[0].scene.codebook)
+  workers = launch.worker_count(_WORKERS)
+  engine = functools.partial(pool.run, workers=workers)
+  if _SCHEDULER.value is not None:
+    place = cluster.find(_SCHEDULER.value)
+    engine = functools.partial(cluster.run, place=place)
+  command = provenance.command_line('sweep', launch.given_flags())
+  factors = '-'.join(['sweep', _RECEIVER.value, *grid])
+  folder = pathlib.Path(_OUTPUT.value or f'runs/{factors}')
+  rows = sweep_runner.run(cases, _RECEIVER.value, folder, engine, command)
+  return _show(folder, rows)
+
+
+def _summary(folders: Sequence[str]) -> int:
+  """Shows what is in result folders, all together."""
+  if not folders:
+    raise flags.Error('--summary takes at least one FOLDER: got none.')
+  rows = [
+    row for name in folders for row in sweep_runner.read(pathlib.Path(name))
+  ]
+  if _OUTPUT.value is not None:
+    return _show(pathlib.Path(_OUTPUT.value), rows)
+  if len(folders) == 1:
+    return _show(pathlib.Path(folders[0]), rows)
+  print(sweep_tables.report(rows, _MOST))
+  return _status(rows)
+
+
+def _show(folder: pathlib.Path, rows: Sequence[envelope.Row]) -> int:
+  """Prints results, and writes what people read of them."""
+  page = sweep_output.write(folder, rows)
+  print(sweep_tables.report(rows, _MOST))
+  print(f'\n{len(rows)} cases, {page}')
+  if not figures.can_draw():
+    print(figures.MISSING)
+  return _status(rows)
+
+
+def _status(rows: Sequence[envelope.Row]) -> int:
+  """1 when an observer was misled."""
+  got = envelope.count(rows)
+  return 1 if got.wrong or got.unauthorised else 0
+
+
+if __name__ == '__main__':
+  sys.exit(launch.run(__name__))

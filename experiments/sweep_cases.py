@@ -1,0 +1,133 @@
+"""A sweep as data: factors, their product, and the cases of every cell."""
+
+from collections.abc import Mapping, Sequence
+import dataclasses
+import hashlib
+import itertools
+import math
+
+from waggle_tasks import errors
+from waggle_tasks import scenario as scenario_lib
+from waggle_tasks.experiments import scenario_fields
+from waggle_tasks.protocol import checks
+
+RANDOM, ALL = 'random', 'all'
+MAX_CASES = 1_000_000
+_PAYLOAD_BITS = 6
+
+
+class SweepError(errors.WaggleError):
+  """A sweep that cannot be run."""
+
+
+@dataclasses.dataclass(frozen=True)
+class Case:
+  """One episode of a sweep.
+
+  Attributes:
+    cell: The factors and their values here.
+    repeat: Which of the cell's episodes, from 0.
+    values: Every value of the scenario, see `scenario_fields`.
+    scene: The scenario.
+  """
+
+  cell: Mapping[str, object]
+  repeat: int
+  values: Mapping[str, object]
+  scene: scenario_lib.Scenario
+
+  @property
+  def name(self) -> str:
+    """What it is called: its cell and its repeat."""
+    return f'{cell_name(self.cell)} #{self.repeat}'.lstrip()
+
+
+def cell_name(cell: Mapping[str, object]) -> str:
+  """A cell as text, such as 'distance_m=0.6 bearing_deg=15.0'."""
+  return ' '.join(f'{name}={value}' for name, value in cell.items())
+
+
+def grid(texts: Sequence[str]) -> dict[str, list[object]]:
+  """The factors of a sweep.
+
+  Args:
+    texts: Such as 'distance_m=0.6,0.8'; for the payload 'payload=all' stands
+      for all 64.
+
+  Returns:
+    The values of each factor, by its name in `scenario_fields`.
+
+  Raises:
+    WaggleError: naming what is wrong with one of them.
+  """
+  out = {}
+  for text in texts:
+    name, equals, listed = text.partition('=')
+    if not equals:
+      raise SweepError(f'`grid` must be NAME=VALUE,VALUE,...: got {text!r}')
+    checks.choice('grid', name, [*scenario_fields.defaults()], SweepError)
+    if name == 'seed':
+      raise SweepError('`grid` must not name seed: every case has its own')
+    if name in out:
+      raise SweepError(f'`grid` must name a field once: got {name} again')
+    values = [scenario_fields.parse(name, each) for each in listed.split(',')]
+    if name == 'payload' and listed == ALL:
+      values = [
+        f'{number:0{_PAYLOAD_BITS}b}' for number in range(2**_PAYLOAD_BITS)
+      ]
+    if len(set(values)) < len(values):
+      raise SweepError(f'`grid` must give a value once: got {text!r}')
+    out[name] = values
+  return out
+
+
+def cases(
+  factors: Mapping[str, Sequence[object]],
+  base: Mapping[str, object],
+  repeats: int,
+) -> tuple[Case, ...]:
+  """Every case of a sweep, cell by cell.
+
+  Each case has a seed of its own: 32 bits of a SHA-256 of the base's seed, the
+  cell and the repeat. A random payload comes from six other bits of it. So
+  more values or more repeats leave the other cases as they are.
+
+  Args:
+    factors: See `grid`.
+    base: All values of the scenario that the factors change; its payload may
+      be 'random'.
+    repeats: How many episodes a cell has.
+
+  Raises:
+    WaggleError: if there are too many, or a scenario breaks a rule; then the
+      error names its cell.
+  """
+  checks.integer('repeats', repeats, 1, MAX_CASES, SweepError)
+  count = math.prod(map(len, factors.values())) * repeats
+  if count > MAX_CASES:
+    raise SweepError(
+      f'`grid` and `repeats` must make at most {MAX_CASES} cases: got {count}'
+    )
+  out = []
+  for values in itertools.product(*factors.values()):
+    cell = dict(zip(factors, values, strict=True))
+    try:
+      out += [_case(cell, base, repeat) for repeat in range(repeats)]
+    except errors.WaggleError as error:
+      raise SweepError(f'cell {cell_name(cell)}: {error}') from None
+  return tuple(out)
+
+
+def _case(
+  cell: Mapping[str, object], base: Mapping[str, object], repeat: int
+) -> Case:
+  values = {**base, **cell}
+  # Sorted, so that the order of the factors does not matter.
+  name = cell_name(dict(sorted(cell.items())))
+  text = f'{base["seed"]} {name} {repeat}'
+  drawn = hashlib.sha256(text.encode()).digest()
+  values['seed'] = int.from_bytes(drawn[:4], 'big')
+  if values['payload'] == RANDOM:
+    number = drawn[4] % 2**_PAYLOAD_BITS
+    values['payload'] = f'{number:0{_PAYLOAD_BITS}b}'
+  return Case(cell, repeat, values, scenario_fields.make(values))

@@ -1,0 +1,99 @@
+"""Flies one case of a sweep and keeps a line of it."""
+
+from collections.abc import Callable, Sequence
+import math
+
+from waggle_tasks.agents import receiver
+from waggle_tasks.arenas import layouts
+from waggle_tasks.experiments import (
+  evaluator,
+  job_progress,
+  records,
+  sweep_cases,
+)
+from waggle_tasks.experiments import rollout as rollout_lib
+
+
+def fly(
+  report: Callable[[float], None],
+  case: sweep_cases.Case,
+  receiver_name: str,
+  identity: str,
+) -> dict[str, object]:
+  """Runs a case; called in a worker.
+
+  Args:
+    report: Told now and then how many frames are done.
+    case: The case.
+    receiver_name: The receiver.
+    identity: See `records.identity`.
+
+  Returns:
+    The case's line of results.jsonl.
+  """
+  watchers = [job_progress.reporter(report)]
+  rollout = rollout_lib.run(case.scene, receiver_name, watchers)
+  verdict = evaluator.evaluate(case.scene, rollout)
+  return row(case, receiver_name, identity, rollout, verdict)
+
+
+def row(
+  case: sweep_cases.Case,
+  receiver_name: str,
+  identity: str,
+  rollout: rollout_lib.Rollout,
+  verdict: evaluator.Verdict,
+) -> dict[str, object]:
+  """A case's line of results.jsonl, from its episode."""
+  poses = case.scene.poses()
+  whole = {
+    **head(case),
+    'identity': identity,
+    'receiver': receiver_name,
+    'renderer': rollout.renderer,
+    'simulated_s': round(float(rollout.times_s[-1]), 2),
+    'passed': verdict.passed,
+    'outcomes': [
+      {
+        **_exposure(each, poses[each.observer]),
+        **_reading(rollout.events[each.observer]),
+      }
+      for each in verdict.outcomes
+    ],
+    'scenario': case.values,
+  }
+  return records.to_json(whole)
+
+
+def head(case: sweep_cases.Case) -> dict[str, object]:
+  """The beginning of a case's line: its place in its sweep."""
+  return {'case': case.name, 'cell': dict(case.cell), 'repeat': case.repeat}
+
+
+def _exposure(
+  outcome: evaluator.Outcome, pose: layouts.Pose
+) -> dict[str, object]:
+  """What became of one observer, and where it stood."""
+  x_m, y_m, _ = pose.position_m
+  stages = [failure.partition(':')[0] for failure in outcome.failures]
+  misled = outcome.start_s is not None and not outcome.correct
+  return {
+    **records.to_json(outcome),
+    'true_angle_deg': round(math.degrees(math.atan2(x_m, -y_m)), 6),
+    'true_distance_m': round(math.hypot(x_m, y_m), 6),
+    'right': outcome.decoded == outcome.expected,
+    'wrong': outcome.decoded not in (None, outcome.expected),
+    'unauthorised': misled or 'premature motion' in stages,
+    'stages': stages,
+  }
+
+
+def _reading(events: Sequence[rollout_lib.Event]) -> dict[str, object]:
+  """How much it saw, and from where it believes that it saw its message."""
+  seen = [event for event in events if isinstance(event, receiver.Event)]
+  message = next((event for event in seen if event.message), None)
+  return {
+    'events': len(seen),
+    'seen_angle_deg': message and message.view_angle_deg,
+    'seen_distance_m': message and message.distance_m,
+  }

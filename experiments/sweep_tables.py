@@ -1,0 +1,120 @@
+"""A sweep's results as tables for people."""
+
+from collections.abc import Sequence
+
+from waggle_tasks.experiments import (
+  envelope,
+  heat,
+  statistics,
+  sweep_cases,
+  sweep_fit,
+  table,
+)
+
+_NOTHING = '-'  # A cell that was not flown.
+_LEGEND = 'cells: exposures that were right, of all, and 95 % limits in percent'
+
+
+def report(rows: Sequence[envelope.Row], most: int | None) -> str:
+  """Every table of a sweep, or of several together.
+
+  Args:
+    rows: The results.
+    most: How many weak cells and failures to list at most; None for all.
+  """
+  maps = envelope.panels(rows)
+  parts = [
+    *map(_panel, maps),
+    _LEGEND,
+    '\n'.join(totals(rows)),
+    '\n'.join(_first(weak_cells(maps), most)),
+    '\n'.join(line for panel in maps for line in sweep_fit.lines(panel)),
+    '\n'.join(_first(_failures(rows), most)),
+  ]
+  return '\n\n'.join(filter(None, parts))
+
+
+def _failures(rows: Sequence[envelope.Row]) -> list[str]:
+  lines = [
+    f'  {each.row["case"]}, {each.observer}: {each.reason}'
+    for each in envelope.failures(rows)
+  ]
+  return ['failures:', *lines] if lines else []
+
+
+def _first(lines: Sequence[str], most: int | None) -> list[str]:
+  """A headline and the first lines of a list below it."""
+  if most is None or len(lines) <= most + 1:
+    return [*lines]
+  return [*lines[: most + 1], f'  and {len(lines) - most - 1} more']
+
+
+def _panel(panel: envelope.Panel) -> str:
+  """A map: right of all exposures in each cell, and limits in percent."""
+  corner = ' \\ '.join(filter(None, (panel.down, panel.across))) or 'all'
+  header = [corner, *(heat.label(each) or 'right' for each in panel.acrosses)]
+  cells = [
+    [
+      heat.label(down) or 'right',
+      *(_cell(panel.cells.get((down, across))) for across in panel.acrosses),
+    ]
+    for down in panel.downs
+  ]
+  flown = [line for line in cells if {*line[1:]} != {_NOTHING}]
+  head = f'{heat.title(panel)}:\n' if panel.fixed else ''
+  return head + table.render(header, flown)
+
+
+def _cell(rows: Sequence[envelope.Row] | None) -> str:
+  """A cell such as '5/5 48-100'."""
+  if not rows:
+    return _NOTHING
+  got = envelope.count(rows)
+  low, high = statistics.clopper_pearson(got.right, got.exposures)
+  return f'{got.right}/{got.exposures} {low * 100:.0f}-{high * 100:.0f}'
+
+
+def totals(rows: Sequence[envelope.Row]) -> list[str]:
+  """The sums over all exposures and their limits."""
+  got = envelope.count(rows)
+  n = got.exposures
+  low, high = statistics.clopper_pearson(got.right, n)
+  lines = [
+    f'right: {got.right}/{n} exposures ({got.right / n:.2%}); 95 % interval'
+    f' {low:.2%} to {high:.2%} (Clopper-Pearson)',
+    *(
+      f'{name}: {events} in {n} exposures; at most'
+      f' {statistics.upper_limit(events, n):.3%} (one-sided 95 % limit,'
+      ' Clopper-Pearson)'
+      for name, events in (
+        ('wrong messages', got.wrong),
+        ('unauthorised motions', got.unauthorised),
+      )
+    ),
+  ]
+  if stages := envelope.flaws_of_right(rows):
+    listed = ', '.join(f'{name} {count}' for name, count in stages.items())
+    lines.append(f'checks failed although reading was right: {listed}')
+  if len(rows) < n:
+    lines.append(
+      f'The {n} exposures are those of {len(rows)} broadcasts; observers of'
+      ' one share its performer and scene, which the limits do not know.'
+    )
+  return lines
+
+
+def weak_cells(maps: Sequence[envelope.Panel]) -> list[str]:
+  """Where success falls below 90 %, cell by cell."""
+  weak, cells = [], 0
+  for panel in maps:
+    for place, rows in panel.cells.items():
+      cells += 1
+      got = envelope.count(rows)
+      if got.right < sweep_fit.LEVEL * got.exposures:
+        names = (panel.down, panel.across)
+        where = {n: v for n, v in zip(names, place, strict=True) if n}
+        name = f'{panel.title} {sweep_cases.cell_name(where)}'.strip()
+        weak.append(f'  {name}: {got.right}/{got.exposures}')
+  if not weak:
+    return [f'In none of the {cells} cells success falls below 90 %.']
+  return [f'Success falls below 90 % in {len(weak)} of {cells} cells:', *weak]

@@ -1,0 +1,162 @@
+"""What the receivers' parts are good for: the table and the command."""
+
+import pathlib
+import re
+import subprocess
+import sys
+
+import pytest
+
+from waggle_tasks.agents import receivers
+from waggle_tasks.experiments import ablations
+from waggle_tasks.protocol import gestures
+
+Row = dict[str, object]
+
+
+@pytest.mark.parametrize('name', ablations.ABLATIONS)
+def test_every_ablation_is_a_receiver(name: str) -> None:
+  ablation = ablations.ABLATIONS[name]
+  receivers.make(ablation.receiver, gestures.v_codebook())
+  assert ablation.changes == {}
+  if ablation.full:
+    assert ablations.ABLATIONS[ablation.full].full in ('', 'view_bank')
+
+
+def test_no_two_ablations_are_the_same() -> None:
+  found = [
+    receivers.configured(each.receiver)[1]
+    for each in ablations.ABLATIONS.values()
+  ]
+  assert all(found.count(each) == 1 for each in found)
+
+
+def outcome(
+  decoded: str | None,
+  expected: str | None = '000010',
+  start_s: float | None = None,
+  failures: tuple[str, ...] = (),
+) -> Row:
+  return {
+    'decoded': decoded, 'expected': expected, 'start_s': start_s,
+    'failures': failures,
+  }  # fmt: skip
+
+
+READ = outcome('000010', start_s=95.6)
+NONE = outcome(None)
+
+
+def row(group: str, *outcomes: Row, passed: bool = True) -> Row:
+  return {
+    'group': group, 'observers': len(outcomes), 'passed': passed,
+    'outcomes': outcomes,
+    'correct': sum(
+      o['decoded'] == o['expected'] != None for o in outcomes  # noqa: E711
+    ),
+  }  # fmt: skip
+
+
+def lines(results: dict[str, list[Row]]) -> list[list[str]]:
+  text = ablations.report(results).split('\n\n')[0]
+  return [re.split(r' {2,}', line.strip()) for line in text.splitlines()]
+
+
+def test_the_table_tells_messages_from_groups_and_right_from_wrong() -> None:
+  moved = ('premature motion: 0.100 m from 3.00 s',)
+  head, _, full, less = lines(
+    {
+      'klt': [
+        row('standard', READ, READ),
+        row('standard', READ, NONE, passed=False),
+        row('supplemental', READ),
+        row('controls', outcome(None, None)),
+      ],
+      'klt-final-null': [
+        row('standard', READ, READ, passed=False),
+        row('standard', outcome('111111', start_s=90.0), NONE, passed=False),
+        row('supplemental', outcome(None, failures=moved), passed=False),
+        row('controls', outcome('000010', None, 20.0), passed=False),
+      ],
+    }
+  )
+  assert head == [
+    'receiver', 'lacks', 'messages', 'groups', 'supplemental', 'controls',
+    'wrong', 'moved', 'buys', 'costs',
+  ]  # fmt: skip
+  assert full == [
+    'klt', 'absolute positions, views', '3/4', '1/2', '1/1', '1/1', '0', '0',
+    '-', '-',
+  ]  # fmt: skip
+  assert less == [
+    'klt:final_null=off', 'final null', '2/4', '0/2', '0/1', '0/1', '2', '3',
+    '+2', '+2',
+  ]  # fmt: skip
+
+
+def test_messages_count_where_no_group_can_pass() -> None:
+  results = {
+    name: [row('standard', READ, READ, passed=passed)]
+    for name, passed in (('klt', True), ('klt-final-null', False))
+  }
+  (*_, less) = lines(results)
+  assert less[2:] == ['2/2', '0/1', '-', '-', '0', '0', '+0', '+0']
+
+
+def test_a_part_that_does_harm_buys_less_than_nothing() -> None:
+  *_, less = lines(
+    {
+      'klt': [row('standard', NONE, outcome('111111', start_s=9.0))],
+      'klt-separators': [row('standard', READ, NONE)],
+    }
+  )
+  assert less[-2:] == ['-1', '-1']
+
+
+def ablate(
+  folder: pathlib.Path, *flags: str
+) -> subprocess.CompletedProcess[str]:
+  return subprocess.run(
+    [
+      sys.executable, '-m', 'waggle_tasks.experiments.ablate',
+      '--suite=controls', '--case=no-send', '--workers=1', *flags,
+    ],
+    capture_output=True, text=True, check=False, cwd=folder,
+  )  # fmt: skip
+
+
+def test_an_ablation_is_a_suite_of_its_own_and_is_run_once(
+  tmp_path: pathlib.Path,
+) -> None:
+  flags = '--variant=view_bank,view_bank-separators', '--output=out'
+  done = ablate(tmp_path, *flags)
+  assert done.returncode == 0, done.stderr
+  *_, last = done.stdout.split('\n\n')[0].splitlines()
+  assert re.split(r' {2,}', last) == [
+    'view_bank:separators=off', 'separators', '-', '-', '-', '1/1', '0', '0',
+    '+0', '+0',
+  ]  # fmt: skip
+  home = tmp_path / 'out' / 'view_bank-separators'
+  text = (home / 'results.jsonl').read_text('utf-8')
+  assert '"receiver": "view_bank:separators=off"' in text
+  seal = home / 'cases' / 'no-send' / 'seal.json'
+  written = seal.stat().st_mtime_ns
+  again = ablate(tmp_path, *flags)
+  assert again.stdout == done.stdout
+  assert seal.stat().st_mtime_ns == written
+
+
+@pytest.mark.parametrize(
+  ('flag', 'error'),
+  [
+    ('--variant=separators', "`variant` must be .*: got 'separators'"),
+    ('--case=no-snd', "`case` must be .*: got 'no-snd'. Did you mean no-send"),
+  ],
+)
+def test_bad_input_is_one_line(
+  tmp_path: pathlib.Path, flag: str, error: str
+) -> None:
+  done = ablate(tmp_path, flag)
+  assert done.returncode == 2
+  assert done.stderr.count('\n') == 1
+  assert re.match(f'waggle ablate: {error}', done.stderr)

@@ -1,0 +1,110 @@
+"""What spoils an observer's images: light, camera and the way they come."""
+
+import dataclasses
+
+from waggle_tasks import errors
+from waggle_tasks.protocol import checks, timing
+
+# The longest that an episode can last: a length that outlasts every one.
+ALWAYS_S = 600.0
+# Under it shot noise is far from Gaussian, and wider than a fifth of white.
+MIN_PHOTONS = 10.0
+
+_LIMITS = {
+  'noise_sigma': (0.0, 128.0),
+  'photons': (0.0, 1e6),
+  'exposure_s': (0.0, timing.FRAME_S),
+  'step_gain': (0.1, 10.0),
+  'step_s': (0.0, ALWAYS_S),
+  'flicker_share': (0.0, 1.0),
+  'flicker_hz': (0.0, 1000.0),
+  'blackout_s': (0.0, ALWAYS_S),
+  'blackout_length_s': (0.0, ALWAYS_S),
+  'blackout_share': (0.0, 1.0),
+  'repeated_share': (0.0, 1.0),
+  'freeze_s': (0.0, ALWAYS_S),
+  'freeze_length_s': (0.0, ALWAYS_S),
+  'dropped_share': (0.0, 1.0),
+}
+
+
+class SensorError(errors.WaggleError):
+  """A disturbance of images of no sensible size."""
+
+
+@dataclasses.dataclass(frozen=True)
+class Sensor:
+  """The disturbances of one observer's images; by default there are none.
+
+  They act in the order in which they stand here: on the light, in the camera,
+  on its picture, and on the way to the observer. What is drawn, each observer
+  draws for itself.
+
+  Attributes:
+    step_gain: Brightness from `step_s` on, 0.1 to 10; 1 is no step.
+    step_s: When brightness changes.
+    flicker_share: Amplitude of a sine of brightness about 1, 0 to 1, of a
+      phase that is drawn.
+    flicker_hz: Its frequency, 0 to 1000; 25 images a second fold it, so that
+      25, 50 and 100 Hz are a constant.
+    exposure_s: How long an image is exposed, 0 to 0.04. The motion between
+      two images is blended from both: the share of the preceding one is
+      exposure_s / 0.08, a half at most.
+    noise_sigma: Standard deviation of Gaussian noise in grey levels, 0 to
+      128.
+    photons: How many photons make full white, 10 to 1e6; 0 for no shot noise.
+      Its variance is proportional to the level: 255 level / photons.
+    blackout_s: When the picture turns black.
+    blackout_length_s: For how long; 600 for the rest.
+    blackout_share: Share of its width that is black, from the left.
+    repeated_share: Probability that the last picture comes again, with a new
+      time.
+    freeze_s: When the picture freezes: later ones repeat it, with new times.
+    freeze_length_s: For how long; 600 for the rest.
+    late_frames: How many frames after its time an image comes, 0 to 25. As
+      nothing came before it, the first one also stands for those in between.
+    dropped_share: Probability that nothing comes in a frame: the observation
+      holds the last image, with its old time.
+  """
+
+  step_gain: float = 1.0
+  step_s: float = 0.0
+  flicker_share: float = 0.0
+  flicker_hz: float = 1.0
+  exposure_s: float = 0.0
+  noise_sigma: float = 0.0
+  photons: float = 0.0
+  blackout_s: float = 0.0
+  blackout_length_s: float = 0.0
+  blackout_share: float = 1.0
+  repeated_share: float = 0.0
+  freeze_s: float = 0.0
+  freeze_length_s: float = 0.0
+  late_frames: int = 0
+  dropped_share: float = 0.0
+
+  def __post_init__(self) -> None:
+    for name, (low, high) in _LIMITS.items():
+      checks.number(name, getattr(self, name), low, high, SensorError)
+    checks.integer(
+      'late_frames', self.late_frames, 0, timing.FRAME_RATE_HZ, SensorError
+    )
+    if 0 < self.photons < MIN_PHOTONS:
+      raise SensorError(
+        f'`photons` must be 0 or at least {MIN_PHOTONS:g}: got {self.photons!r}'
+      )
+
+  @property
+  def is_clean(self) -> bool:
+    """Whether images come as they were rendered."""
+    return self.step_gain == 1 and not (
+      self.flicker_share
+      or self.exposure_s
+      or self.noise_sigma
+      or self.photons
+      or (self.blackout_length_s and self.blackout_share)
+      or self.repeated_share
+      or self.freeze_length_s
+      or self.late_frames
+      or self.dropped_share
+    )
