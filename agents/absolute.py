@@ -98,6 +98,7 @@ class Follower:
     if self._detector.noise > config.speed_noise:
       frames = round(frames * self._detector.noise / config.speed_noise)
     self._recent: deque[tuple[float, float, float]] = deque(maxlen=frames)
+    self._swayed: deque[tuple[float, float, float]] = deque(maxlen=frames)
     self._seen_s = math.inf
 
   def lost_s(self, time_s: float) -> float:
@@ -131,9 +132,12 @@ class Follower:
     self._repair(image, gate)
     self._centre_px, self._seen_s = centre_px, time_s
     self._recent.append((time_s, *centre_px))
+    self._swayed.append((time_s, *self._alignment.shift_px))
+    # Where the whole room moves, a target at rest may too, by parallax.
+    speed_px_s = max(_speed(self._recent) - _speed(self._swayed), 0.0)
     support = cv2.countNonZero(weights)
     return klt.Track(
-      time_s, centre_px, _speed(self._recent), support, min(share, 1.0), True
+      time_s, centre_px, speed_px_s, support, min(share, 1.0), True
     )
 
   def _lose(self, time_s: float, quality: float, outside: bool) -> klt.Track:

@@ -7,6 +7,8 @@ with gain and offset) at the reference's edges, but for those that do not fit,
 which is where something moves.
 """
 
+import dataclasses
+
 import cv2
 import numpy as np
 
@@ -14,16 +16,14 @@ from waggle_tasks.agents import difference
 
 _SOFT_PX = 5  # Pictures are averaged over this side, which widens edges.
 _EDGE_CELL_PX = 16  # In each cell of this side the steepest pixel is used...
-_STEEP = 2.0  # ...of so many grey levels per pixel...
-_USUAL = 8.0  # ...and so many times the usual; fewer of them...
-_FEWEST = 24  # ...than this tell nothing of shifts.
-_TARGET_PX = 160  # Side of the square, in the middle, that may move by itself.
-_LEVEL_CELL_PX = 64  # And one in each cell of this side, of light.
+_STEEP = 2.0  # Edges are of so many grey levels per pixel...
+_USUAL = 8.0  # ...and so many times the usual.
 _STEPS = 5  # Of Gauss and Newton, at most.
 _ENOUGH_PX = 0.02  # A smaller step is the last one.
 _OUTLIER = 4.0  # So many medians of all residuals...
 _OUTLIER_LEVELS = 3.0  # ...and at least so many grey levels do not fit.
-_MIN_FIT = 0.5  # Share of pixels that must fit.
+_EXPLAINED = 0.5  # Of the range of levels; what is nearer than this fits.
+_MIN_FIT = 0.5  # Share of pixels that must.
 _MIN_RANGE = 8.0  # Grey levels; a reference of fewer tells nothing.
 _GAINS = (0.25, 4.0)
 # Less is left alone, and what noise would do with so many deviations.
@@ -32,35 +32,68 @@ _REST_PX = 0.03  # A camera that swayed is at rest within this.
 _NOTHING = np.array([0.0, 0.0, 1.0, 0.0])  # x, y, gain, offset.
 
 
+@dataclasses.dataclass(frozen=True)
+class Edges:
+  """Which pixels tell of shifts.
+
+  Attributes:
+    cell_px: The steepest in each cell of this side.
+    spared_px: None in a square of this side in the middle.
+    fewest: Fewer tell nothing.
+    grid: Along each side, more pixels that tell of light.
+  """
+
+  cell_px: int
+  spared_px: int
+  fewest: int
+  grid: int
+
+
+ROOM = Edges(16, 160, 24, 8)  # All but the target, which may move by itself.
+TARGET = Edges(4, 0, 8, 2)  # Of a picture of little else.
+
+
 class Alignment:
   """Brings images of one scene to the first of them.
 
   Attributes:
+    tells_shifts: Whether there are enough edges to know where it is.
     moving: Whether the last image had to be shifted.
   """
 
-  def __init__(self, image: np.ndarray) -> None:
-    """Begins with the reference, (H, W, 3) uint8 RGB or (H, W) grey."""
+  def __init__(self, image: np.ndarray, edges: Edges = ROOM) -> None:
+    """Begins with the reference.
+
+    Args:
+      image: (H, W, 3) uint8 RGB or (H, W) grey.
+      edges: Where to look.
+    """
     self._reference = difference.grey(image)
     soft = _soften(self._reference)
-    rows, columns, self._shifts = _telling(soft)
+    rows, columns, self.tells_shifts = _telling(soft, edges)
     self._places_px = np.stack([columns, rows]).astype(np.float32)  # (2, K)
     self._index = rows * soft.shape[1] + columns  # (K,)
     self._sharp = self._reference[rows, columns].astype(float)
     levels = soft[rows, columns].astype(float)
     slopes = [each[rows, columns] for each in difference.slopes(soft)]
-    shifts = self._shifts * np.array(slopes, float)
+    shifts = self.tells_shifts * np.array(slopes, float)
     # What changes at each pixel with each of the four numbers: (4, K).
     self._table = np.stack([*-shifts, levels, np.ones_like(levels)])
     self._inverse = np.linalg.pinv(self._table.T)  # (4, K)
     # Deviation of a shift for that of the pixels.
     self._spread = np.linalg.norm(self._inverse[:2], axis=1).max()
+    self._range = float(np.abs(levels - levels.mean()).mean())
     self._useful = np.ptp(levels) > _MIN_RANGE
     self._fit = _NOTHING
     self._sways = self.moving = False
 
+  @property
+  def shift_px(self) -> np.ndarray:
+    """How far the last image was shifted, (2,) along x and y."""
+    return self._fit[:2]
+
   def step(self, image: np.ndarray) -> np.ndarray | None:
-    """Takes an image of the same scene, (H, W, 3) uint8 RGB.
+    """Takes an image of the same scene, (H, W, 3) uint8 RGB or (H, W) grey.
 
     Returns:
       The same where nothing has happened to it as a whole; otherwise (H, W)
@@ -71,26 +104,32 @@ class Alignment:
     if not self._useful or (rested and self._as_it_was(image)):
       return image
     grey = difference.grey(image)
+    return self._undo(grey) if self.find(grey) else None
+
+  def find(self, grey: np.ndarray) -> bool:
+    """Finds what happened to an image, (H, W) uint8, of the same scene.
+
+    Returns:
+      Whether it is one.
+    """
     fit, share, limit = self._solve(_soften(grey))
     if share < _MIN_FIT or not _GAINS[0] < fit[2] < _GAINS[1]:
       self._fit = _NOTHING
-      return None
-    shift_px = np.abs(fit[:2]).max()
-    still_px = self._still_px(limit)
+      return False
+    shift_px, still_px = np.abs(fit[:2]).max(), self._still_px(limit)
     self._sways |= bool(shift_px > still_px)
     if shift_px < (_REST_PX if self._sways else still_px):
       fit[:2] = 0.0
     light = (fit[2] - 1) * self._sharp + fit[3]
     still = not fit[:2].any() and _small(light)
     self._fit = _NOTHING if still else fit
-    return self._undo(grey)
+    return True
 
   def _as_it_was(self, image: np.ndarray) -> bool:
     """Whether a first guess, which is quick, finds nothing to undo."""
-    seen = cv2.cvtColor(
-      image.reshape(-1, 1, 3)[self._index], cv2.COLOR_RGB2GRAY
-    )
-    change = seen.ravel() - self._sharp
+    in_a_row = image.reshape(1, self._reference.size, *image.shape[2:])
+    seen = difference.grey(in_a_row[:, self._index])[0]
+    change = seen - self._sharp
     limit = _outlier(change)
     guess = self._inverse @ np.clip(change, -limit, limit)
     light = guess[2] * self._sharp + guess[3]
@@ -118,7 +157,8 @@ class Alignment:
       fit += step
       if np.abs(step[:2]).max() < _ENOUGH_PX:
         break
-    return fit, float(fits.mean()), limit
+    explained = np.abs(residual) < _EXPLAINED * fit[2] * self._range
+    return fit, float(explained.mean()), limit
 
   def _undo(self, grey: np.ndarray) -> np.ndarray:
     x, y, gain, offset = self._fit
@@ -143,20 +183,22 @@ def _soften(grey: np.ndarray) -> np.ndarray:
   return cv2.blur(grey, (_SOFT_PX, _SOFT_PX))
 
 
-def _telling(soft: np.ndarray) -> tuple[np.ndarray, np.ndarray, bool]:
+def _telling(
+  soft: np.ndarray, which: Edges
+) -> tuple[np.ndarray, np.ndarray, bool]:
   """Rows and columns of pixels that tell, and whether they tell of shifts."""
   slopes = [np.abs(each) for each in difference.slopes(soft)]
-  edges = np.concatenate([_largest(each, _EDGE_CELL_PX) for each in slopes], 1)
+  edges = np.concatenate([_largest(each, which.cell_px) for each in slopes], 1)
   steepness = np.maximum(*slopes)
   usual = float(np.median(steepness))  # That of noise; few pixels are edges.
   steep = steepness[*edges] > max(_STEEP, _USUAL * usual)
-  first, step = _LEVEL_CELL_PX // 2, _LEVEL_CELL_PX
-  height, width = soft.shape
-  levels = np.mgrid[first:height:step, first:width:step].reshape(2, -1)
+  step_px = min(soft.shape) // which.grid
+  grid = tuple(slice(step_px // 2, length, step_px) for length in soft.shape)
+  levels = np.mgrid[grid].reshape(2, -1)
   middle_px = np.array(soft.shape)[:, None] / 2
-  steep &= (np.abs(edges - middle_px) > _TARGET_PX / 2).any(axis=0)
+  steep &= (np.abs(edges - middle_px) > which.spared_px / 2).any(axis=0)
   rows, columns = np.concatenate([edges[:, steep], levels], 1)
-  return rows, columns, bool(np.count_nonzero(steep) >= _FEWEST)
+  return rows, columns, bool(np.count_nonzero(steep) >= which.fewest)
 
 
 def _largest(values: np.ndarray, side: int) -> np.ndarray:  # (H, W)

@@ -96,8 +96,7 @@ class Differencing:
     watch_sigmas: The same while nothing but noise may be there.
     slack_px: How far pictures of a camera that sways may be out of place once
       they are aligned...
-    most_slack_px: ...and how far a target may sway that is taken to be at
-      rest.
+    rest_px: ...and how far a target may sway before it has ever moved.
     speed_frames: Over how many images speed is measured...
     speed_noise: ...in noise up to this; over more of them in more.
     gate_widths: Half the side of the square around the target in which it is
@@ -119,7 +118,7 @@ class Differencing:
   box_sigmas: float = 4.0
   watch_sigmas: float = 8.0
   slack_px: float = 1.0
-  most_slack_px: float = 4.0
+  rest_px: float = 4.0
   speed_frames: int = 10
   speed_noise: float = 8.0
   gate_widths: float = 0.9

@@ -63,11 +63,15 @@ class Separation:
     self._sigmas = sigmas
     self.greys: list[tuple[float, np.ndarray]] = []
 
-  def step(self, grey: np.ndarray, time_s: float) -> Ghost | None:
-    """Takes an image and returns the ghost once the target has left it."""
+  def add(self, grey: np.ndarray, time_s: float) -> None:
+    """Takes an image, (H, W) uint8."""
     self.greys.append((time_s, grey))
+
+  def find(self) -> Ghost | None:
+    """The ghost, once the target has left it in the last image."""
     if len(self.greys) <= _LAG:
       return None
+    grey = self.greys[-1][1]
     known = self._background
     _, grey_before = self.greys[-1 - _LAG]
     before = difference.Background(grey_before, known.variance, known.slack)

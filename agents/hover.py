@@ -71,7 +71,6 @@ class Hover:
     if self._background is not None:
       return self._watch(aligned, time_s)
     if not self._learn(difference.grey(aligned), time_s):
-      self._sway()
       self._begin(image, time_s)
     return None
 
@@ -81,6 +80,7 @@ class Hover:
     grey = difference.grey(image)
     self._first = difference.Background(grey)
     self._first.loosen(self._slack_px)
+    self._know_target(grey)
     self._sum = grey.astype(np.float32)
     self._count, self._since_s = 1, time_s
     smooth = cv2.blur(grey[_middle(grey, _CONTRAST_PX)], (5, 5))
@@ -93,13 +93,6 @@ class Hover:
       for each in filter(None, (self._first, self._background)):
         each.loosen(slack_px)
 
-  def _sway(self) -> None:
-    """Allows more of what does not come to rest."""
-    config = self._config
-    self._slack_px = min(
-      max(2 * self._slack_px, config.slack_px), config.most_slack_px
-    )
-
   def _learn(self, grey: np.ndarray, time_s: float) -> bool:
     """Adds an image to the background, unless something has moved."""
     middle = _middle(grey, self._config.watch_px)
@@ -108,7 +101,8 @@ class Hover:
       self._detector = difference.Detector(self._config, noise)
       soft = cv2.blur(self._first.grey, (_SOFT_PX, _SOFT_PX))
       self._first.variance = self._detector.background(soft).variance
-    if self._moved(grey[middle], self._first[middle], 2.0):
+    moved = self._moved(grey[middle], self._first[middle], 2.0)
+    if moved and not self._sways(grey):
       return False
     cv2.accumulate(grey, self._sum)
     self._count += 1
@@ -118,6 +112,7 @@ class Hover:
       self._background = self._detector.background(mean)
       self._background.loosen(self._slack_px)
       self._alignment = alignment.Alignment(mean)
+      self._know_target(mean)
       self._last = None
     return True
 
@@ -153,18 +148,33 @@ class Hover:
     least = box_pixels if self._detector.noisy else _MIN_PIXELS
     return cv2.countNonZero(weights) >= least
 
+  def _know_target(self, grey: np.ndarray) -> None:
+    rest = grey[_middle(grey, _REST_PX)]
+    self._target = alignment.Alignment(rest, alignment.TARGET)
+
+  def _sways(self, grey: np.ndarray) -> bool:
+    """Whether what has moved is the target, and hardly."""
+    target = self._target
+    known = target.find(grey[_middle(grey, _REST_PX)])
+    near = np.abs(target.shift_px).max() <= self._config.rest_px
+    return target.tells_shifts and known and near
+
   def _separate(self, grey: np.ndarray, time_s: float) -> Departure | None:
-    found = self._separation.step(grey, time_s)
-    if found is not None:
+    separation, sways = self._separation, self._sways(grey)
+    separation.add(grey, time_s)
+    self.visible = sways and self._contrast
+    if not sways and (found := separation.find()):
       return Departure(
         self._alignment, self._detector, self._background, self._slack_px,
-        found, self._separation.greys,
+        found, separation.greys,
       )  # fmt: skip
-    if config_lib.lasted(self._since_s, time_s, self._config.separate_s):
-      self._sway()
-      self._forget()
-    elif not self._moved(grey, self._background, 1.0):
+    if not self._moved(grey, self._background, 1.0):
       self._separation = None
+    elif config_lib.lasted(self._since_s, time_s, self._config.separate_s):
+      if sways:
+        self._separation = None
+      else:
+        self._forget()
     return None
 
 
