@@ -11,6 +11,7 @@ from waggle_tasks.agents import difference, hover, klt
 from waggle_tasks.agents import ghost as ghost_lib
 
 _SWAYING = 2  # Over how many times as many images speed is then measured.
+_SWAYS = 75  # Images in which the camera's fastest sway counts.
 _REPAIRS = 25  # Images that the background behind the hover is made from.
 # A target that is sought in the whole picture must be this much of itself.
 _MIN_SHARE, _MAX_SHARE = 0.3, 3.0
@@ -98,7 +99,8 @@ class Follower:
     if self._detector.noise > config.speed_noise:
       frames = round(frames * self._detector.noise / config.speed_noise)
     self._recent: deque[tuple[float, float, float]] = deque(maxlen=frames)
-    self._swayed: deque[tuple[float, float, float]] = deque(maxlen=frames)
+    self._shifts: deque[tuple[float, float, float]] = deque(maxlen=frames)
+    self._sways: deque[float] = deque(maxlen=_SWAYS)
     self._seen_s = math.inf
 
   def lost_s(self, time_s: float) -> float:
@@ -132,9 +134,10 @@ class Follower:
     self._repair(image, gate)
     self._centre_px, self._seen_s = centre_px, time_s
     self._recent.append((time_s, *centre_px))
-    self._swayed.append((time_s, *self._alignment.shift_px))
-    # Where the whole room moves, a target at rest may too, by parallax.
-    speed_px_s = max(_speed(self._recent) - _speed(self._swayed), 0.0)
+    self._shifts.append((time_s, *self._alignment.shift_px))
+    self._sways.append(_speed(self._shifts))
+    # Where the whole room moves, a target at rest does too, by parallax.
+    speed_px_s = max(_speed(self._recent) - max(self._sways), 0.0)
     support = cv2.countNonZero(weights)
     return klt.Track(
       time_s, centre_px, speed_px_s, support, min(share, 1.0), True

@@ -147,18 +147,22 @@ class Alignment:
     """
     fit, table = self._fit.copy(), self._table.copy()
     for _ in range(_STEPS):
-      places = self._places_px + fit[:2, None].astype(np.float32)
-      seen = cv2.remap(soft, *places, cv2.INTER_LINEAR).ravel()
-      residual = seen - fit[2:] @ self._table[2:]
-      limit = _outlier(residual)
-      fits = np.abs(residual) <= limit
+      residual = self._residual(soft, fit)
+      fits = np.abs(residual) <= _outlier(residual)
       table[:2] = fit[2] * self._table[:2]
       step = np.linalg.lstsq(table[:, fits].T, residual[fits], rcond=1e-6)[0]
       fit += step
       if np.abs(step[:2]).max() < _ENOUGH_PX:
         break
+    residual = self._residual(soft, fit)
     explained = np.abs(residual) < _EXPLAINED * fit[2] * self._range
-    return fit, float(explained.mean()), limit
+    return fit, float(explained.mean()), _outlier(residual)
+
+  def _residual(self, soft: np.ndarray, fit: np.ndarray) -> np.ndarray:
+    """What an image has more than the reference brought to it, (K,)."""
+    places = self._places_px + fit[:2, None].astype(np.float32)
+    seen = cv2.remap(soft, *places, cv2.INTER_LINEAR).ravel()
+    return seen - fit[2:] @ self._table[2:]
 
   def _undo(self, grey: np.ndarray) -> np.ndarray:
     x, y, gain, offset = self._fit

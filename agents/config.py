@@ -240,12 +240,15 @@ class Stillness(_Numbers):
     max_px_s: Largest image speed.
     hold_s: How long all of it must last.
     null_quality: Smallest tracking quality.
+    max_repeated: Largest share of images that were seen before, of a camera
+      that never repeats one by itself; 1, as in the paper, asks for no life.
   """
 
   anchor_px: float = 15.0
   max_px_s: float = 2.5
   hold_s: float = 3.0
   null_quality: float = 0.2
+  max_repeated: float = 1.0
 
 
 @dataclasses.dataclass(frozen=True)
@@ -273,7 +276,12 @@ class Config:
 KLT = Config()
 KLT_BANK = Config(views=Views())
 ABSOLUTE = Config(Differencing(), Excursion())
-VIEW_BANK = Config(Differencing(), Excursion(), views=Views())
+VIEW_BANK = Config(
+  Differencing(),
+  Excursion(),
+  stillness=Stillness(max_repeated=0.5),
+  views=Views(),
+)
 
 
 def zoomed(config: _Group, factor: float) -> _Group:

@@ -8,6 +8,7 @@ import numpy as np
 from waggle_tasks.agents import config as config_lib
 from waggle_tasks.agents import (
   klt,
+  liveness,
   recogniser,
   segmenter,
   stillness,
@@ -85,6 +86,7 @@ class StagedReceiver:
     self._stillness = stillness.StillnessDetector(
       config.stillness, config.tracking.max_gap_s
     )
+    self._liveness = liveness.Liveness(config.stillness.max_repeated)
     self._parser = frame.Parser(rules=config.framing)
     self._where: tuple[float | None, float | None] = None, None
     self.track: klt.Track | None = None
@@ -106,7 +108,11 @@ class StagedReceiver:
     if self.segment is not None:
       recognition = self._recogniser.recognise(self.segment)
       events.append(self._event(time_s, recognition.symbol, recognition))
-    if self._stillness.step(self.track, watcher.anchor_px, watcher.moving):
+    resting = self.track.valid and not watcher.moving
+    live = self._liveness.step(image, resting)
+    if self._stillness.step(
+      self.track, watcher.anchor_px, watcher.moving, live
+    ):
       events.append(self._event(time_s, Symbol.NULL, None))
     return tuple(events)
 

@@ -28,7 +28,11 @@ class StillnessDetector:
     self._confirmed = False
 
   def step(
-    self, track: klt.Track, anchor_px: np.ndarray | None, moving: bool
+    self,
+    track: klt.Track,
+    anchor_px: np.ndarray | None,
+    moving: bool,
+    live: bool = True,
   ) -> bool:
     """Takes one frame's track.
 
@@ -36,6 +40,7 @@ class StillnessDetector:
       track: The target; a valid one has the tracking quality asked for.
       anchor_px: (2,) where the target was first, or None.
       moving: Whether a gesture is under way.
+      live: Whether the image is no repetition.
 
     Returns:
       Whether this frame confirms a null.
@@ -45,6 +50,7 @@ class StillnessDetector:
       self._confirmed = False
     still = (
       not moving
+      and live
       and track.valid
       and track.quality >= self._config.null_quality
       and gap_s <= self._max_gap_s
