@@ -28,6 +28,23 @@ def _renderer(physics: mjcf.Physics) -> renderer.Renderer:
   return _RENDERERS[key]
 
 
+class _Shown:
+  """A picture for composer's buffer, which copies it when it is read.
+
+  The buffer would also copy what is put into it; this hands over the picture
+  itself, which stays as it is until the next frame.
+  """
+
+  def __init__(self, pixels: np.ndarray) -> None:
+    self._pixels = pixels
+
+  def __array__(
+    self, dtype: np.typing.DTypeLike = None, copy: bool | None = None
+  ) -> np.ndarray:
+    del dtype, copy
+    return self._pixels
+
+
 class EyeCamera(observable.Observable):
   """Images of one camera, (480, 640, 3) uint8 RGB."""
 
@@ -61,6 +78,25 @@ class EyeCamera(observable.Observable):
     """The image's shape, type and range."""
     shape = (renderer.HEIGHT, renderer.WIDTH, 3)
     return specs.BoundedArray(shape, np.uint8, 0, 255, self._camera.name)
+
+  def observation_callable(
+    self,
+    physics: mjcf.Physics,
+    random_state: np.random.RandomState | None = None,
+  ) -> Callable[[], np.ndarray | _Shown]:
+    """What composer calls for each image, see the base class."""
+    take = super().observation_callable(physics, random_state)
+    if self.delay or (self.buffer_size or 1) > 1:  # It is kept for longer.
+      return take
+    return lambda: _Shown(take())
+
+  def __call__(
+    self,
+    physics: mjcf.Physics,
+    random_state: np.random.RandomState | None = None,
+  ) -> np.ndarray:
+    """The image now, a copy of its own."""
+    return super().observation_callable(physics, random_state)().copy()
 
   def _callable(self, physics: mjcf.Physics) -> Callable[[], np.ndarray]:
     eyes = _renderer(physics)

@@ -34,6 +34,21 @@ def test_an_image_that_is_kept_does_not_change(
   np.testing.assert_array_equal(np.stack(kept), np.stack(copies))
 
 
+@pytest.mark.parametrize('choice', [{'buffer_size': 3}, {'delay': 2}])
+def test_images_that_composer_keeps_are_those_of_their_time(
+  choice: dict[str, int], dancing: Load, film: Film
+) -> None:
+  images = film(dancing(observers=1))[0]
+  environment = dancing(observers=1)
+  environment.task.observables[0]['camera'].configure(**choice)
+  kept = film(environment)[0]
+  if 'delay' in choice:
+    np.testing.assert_array_equal(kept[4:], images[2:-2])
+  else:
+    for index in range(2, len(images)):
+      np.testing.assert_array_equal(kept[index], images[index - 2 : index + 1])
+
+
 def test_both_cameras_give_the_same_picture(dancing: Load, film: Film) -> None:
   np.testing.assert_array_equal(
     film(dancing(camera='incremental')), film(dancing(camera='full'))
