@@ -22,7 +22,8 @@ _REPEATS = flags.DEFINE_integer('repeats', 3, 'How often each part is run.')
 _ONLY = flags.DEFINE_list(
   'only',
   [],
-  'Only these parts: cameras, stages, realtime, observers, memory, workers.',
+  'Only these parts: cameras, stages, receivers, realtime, observers, memory,'
+  ' workers.',
 )
 _SIMULATED_S = flags.DEFINE_float(
   'simulated_s', None, 'Length of each broadcast, in s; unset, what is needed.'

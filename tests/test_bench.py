@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 
 from waggle_tasks import registry, suites
+from waggle_tasks.agents import receivers
 from waggle_tasks.entities import renderer
 from waggle_tasks.experiments.bench_parts import (
   cameras,
@@ -22,6 +23,7 @@ from waggle_tasks.experiments.bench_parts import (
   loops,
   memory,
   processes,
+  readers,
   report,
   sameness,
   sections,
@@ -59,6 +61,10 @@ MEASURED = {
     },
   ),
   'stages': [{'physics': 1e-4, 'rendering': 3e-4, stages.OTHER: 1e-4}],
+  'receivers': [
+    {'klt': [0.0003, 0.0004, 0.0005], 'view_bank': [0.0001, 0.0001, 0.0004]},
+    {'klt': [0.0004, 0.0004, 0.0004], 'view_bank': [0.0001, 0.0002, 0.0003]},
+  ],
   'realtime': [
     loops.Loop(3, 2500, 9.0, 10.0, 9.5), loops.Loop(3, 2500, 7.0, 8.0, 7.5),
     loops.Loop(3, 2500, 19.0, 20.0, 9.5),
@@ -79,6 +85,7 @@ def test_ratios_are_medians_of_what_was_measured_side_by_side() -> None:
       'stock camera / incremental camera': 100.0,
       'stock, no shadows or multisampling / incremental camera': 10.0,
       'our full render / incremental camera': 20.0,
+      'klt receiver / view_bank': 2.0,
       'simulated time / time on one core': 10.0,
       'cost of a receiver and frame, 16 observers / 2': 1.0,
       'throughput, 2 processes / 1': 2.0,
@@ -96,6 +103,7 @@ def test_a_report_tells_the_ratios_before_anything_else() -> None:
     'stock 60.000 36',
     'all rest 0.100 40%',
     'rendering 300 60%',
+    'view_bank 150 200',
     'everything 10.00 10.0',
     'broadcast 3 261',
   } <= {' '.join(line.split()) for line in lines}
@@ -372,3 +380,10 @@ def test_the_command_checks_pictures(tmp_path: pathlib.Path) -> None:
   assert 'in 20 pictures:\nthe same, 1 is allowed.' in child.stdout
   pictures = json.loads(path.read_text(encoding='utf-8'))['pictures']
   assert max(each['incremental']['levels'] for each in pictures) <= 1
+
+
+def test_every_receiver_is_timed_on_the_same_images() -> None:
+  scene = registry.find('broadcast', observers=1, duration_s=0.4)
+  (found,) = readers.measure(scene, 1, itertools.count().__next__)
+  assert {*found} == {*receivers.RECEIVERS}
+  assert all(seconds == [1] * 11 for seconds in found.values())

@@ -89,6 +89,29 @@ def _stages(found: Sequence[Mapping[str, float]]) -> str:
   return table.render(header, rows)
 
 
+def _receiver_ratios(found: Sequence[Mapping[str, Sequence[float]]]) -> Ratios:
+  mean_s = {
+    name: [statistics.fmean(each[name]) for each in found] for name in found[0]
+  }
+  return {
+    f'{loops.RECEIVER} receiver / {name}': _ratio(
+      mean_s[loops.RECEIVER], seconds
+    )
+    for name, seconds in mean_s.items()
+    if name != loops.RECEIVER
+  }
+
+
+def _receivers(found: Sequence[Mapping[str, Sequence[float]]]) -> str:
+  header = ('one image of the default broadcast', 'median us', 'mean us')
+  rows = []
+  for name in found[0]:
+    middle_s = statistics.median(statistics.median(e[name]) for e in found)
+    mean_s = statistics.median(statistics.fmean(e[name]) for e in found)
+    rows.append((name, _number(1e6 * middle_s, 0), _number(1e6 * mean_s, 0)))
+  return table.render(header, rows)
+
+
 def _realtime_ratios(found: Sequence[loops.Loop]) -> Ratios:
   simulated_s = [loop.simulated_s for loop in found]
   wall_s = [loop.whole_s for loop in found]
@@ -162,6 +185,7 @@ def _workers(found: Mapping[int, Sequence[float]]) -> str:
 _TABLES = {
   'cameras': _cameras,
   'stages': _stages,
+  'receivers': _receivers,
   'realtime': _realtime,
   'observers': _observers,
   'memory': _memory,
@@ -169,6 +193,7 @@ _TABLES = {
 }
 _RATIOS = {
   'cameras': _camera_ratios,
+  'receivers': _receiver_ratios,
   'realtime': _realtime_ratios,
   'observers': _observer_ratios,
   'workers': _worker_ratios,

@@ -9,6 +9,7 @@ from waggle_tasks.experiments.bench_parts import (
   loops,
   memory,
   processes,
+  readers,
   stages,
   workers,
 )
@@ -104,6 +105,13 @@ def measure_stages(settings: Settings) -> list[dict[str, float]]:
   )
 
 
+def measure_receivers(settings: Settings) -> list[dict[str, list[float]]]:
+  """All receivers on the same images."""
+  return processes.alone(
+    readers.measure, settings.whole, settings.repeats, settings.clock
+  )
+
+
 def measure_realtime(settings: Settings) -> list[loops.Loop]:
   """The default broadcast, everything included."""
   return processes.alone(
@@ -138,6 +146,7 @@ def measure_workers(settings: Settings) -> dict[int, list[float]]:
 SECTIONS = {
   'cameras': measure_cameras,
   'stages': measure_stages,
+  'receivers': measure_receivers,
   'realtime': measure_realtime,
   'observers': measure_observers,
   'memory': measure_memory,

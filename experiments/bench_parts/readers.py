@@ -1,0 +1,61 @@
+"""What each receiver costs, all of them on the same images."""
+
+from dm_control import composer
+import dm_env
+
+from waggle_tasks import scenario
+from waggle_tasks.agents import observer_agent, receivers
+from waggle_tasks.experiments.bench_parts import loops, processes
+
+
+class Audience:
+  """A watcher that lets every receiver read what each observer sees.
+
+  Attributes:
+    seconds: By receiver, what each image took until it had the message.
+  """
+
+  def __init__(self, scene: scenario.Scenario, clock: processes.Clock) -> None:
+    """Makes new receivers for every observer of a scenario."""
+    self._clock = clock
+    self._readers = {
+      name: [
+        receivers.make(name, scene.codebook) for _ in range(scene.observers)
+      ]
+      for name in receivers.RECEIVERS
+    }
+    self.seconds: dict[str, list[float]] = {n: [] for n in self._readers}
+
+  def __call__(
+    self,
+    environment: composer.Environment,
+    timestep: dm_env.TimeStep,
+    team: observer_agent.Team,
+  ) -> None:
+    """Shows a time step's images to those who still read."""
+    del environment, team
+    for name, readers in self._readers.items():
+      for index, each in enumerate(timestep.observation):
+        if readers[index] is None:
+          continue
+        begin_s = self._clock()
+        events = readers[index].step(each['camera'], float(each['time_s']))
+        self.seconds[name].append(self._clock() - begin_s)
+        if any(event.message for event in events):
+          readers[index] = None
+
+
+def measure(
+  scene: scenario.Scenario, repeats: int, clock: processes.Clock
+) -> list[dict[str, list[float]]]:
+  """Runs a broadcast for all receivers at a time.
+
+  Returns:
+    For each repeat, by receiver, the seconds of every image.
+  """
+  out = []
+  for _ in range(repeats):
+    audience = Audience(scene, clock)
+    loops.run(scene, clock, [audience])
+    out.append(audience.seconds)
+  return out
