@@ -7,6 +7,7 @@ import pathlib
 
 import numpy as np
 
+from waggle_tasks import errors
 from waggle_tasks.experiments import envelope, heat, palette
 
 NAMES = 'envelope.svg', 'envelope.png'
@@ -17,6 +18,10 @@ MISSING = (
 _CELL_IN = 0.62, 0.42  # Width and height of a cell.
 _MARGIN_IN = 1.3, 1.15
 _DPI = 150
+
+
+class FigureError(errors.WaggleError):
+  """A picture that cannot be drawn here."""
 
 
 def can_draw() -> bool:
@@ -35,7 +40,12 @@ def draw(
 
   Returns:
     The files.
+
+  Raises:
+    FigureError: without matplotlib.
   """
+  if not can_draw():
+    raise FigureError(MISSING)
   import matplotlib as mpl
   from matplotlib import figure as figure_lib
 

@@ -1,8 +1,9 @@
-"""Makes the pictures of the documentation from one default broadcast.
+"""Makes the pictures of the documentation.
 
-composite.png is a picture of its composite video, gestures.png the four
-gestures as the middle observer sees them: the performer at equal times, and
-the track that the receiver made of it.
+From one default broadcast: composite.png is a picture of its composite video,
+gestures.png the four gestures as the middle observer sees them: the performer
+at equal times, and the track that the receiver made of it. With --sweep it
+flies nothing: envelope.png, and envelope.svg, are the maps of these sweeps.
 """
 
 from collections.abc import Mapping, Sequence
@@ -17,7 +18,16 @@ import numpy as np
 
 from waggle_tasks import scenario
 from waggle_tasks.agents import observer_agent
-from waggle_tasks.experiments import launch, palette, png, story, traces
+from waggle_tasks.experiments import (
+  envelope,
+  figures,
+  launch,
+  palette,
+  png,
+  story,
+  sweep_runner,
+  traces,
+)
 from waggle_tasks.experiments import rollout as rollout_lib
 from waggle_tasks.experiments.video import film, layout, lens, page, pen
 from waggle_tasks.protocol import timing
@@ -26,6 +36,8 @@ from waggle_tasks.protocol.symbols import MOTIONS
 _OUTPUT = flags.DEFINE_string(
   'output', 'docs/gallery', 'Folder of the pictures; those in it are replaced.'
 )
+
+_SWEEP = flags.DEFINE_list('sweep', [], 'Draw the envelope of these folders.')
 
 _TIME_S = 78.6  # Of the composite: in the last bit, with the others read.
 _OBSERVER = 1  # The one in the middle of three, from 0.
@@ -89,6 +101,9 @@ def main(argv: Sequence[str]) -> int:
   """Flies the broadcast and writes the pictures; returns the exit status."""
   del argv
   folder = pathlib.Path(_OUTPUT.value)
+  if _SWEEP.value:
+    print(*_envelope(folder, _SWEEP.value), sep='\n')
+    return 0
   scene = scenario.Scenario()
   shots = Shots(scene)
   flown = rollout_lib.run(scene, 'klt', [shots])
@@ -100,6 +115,16 @@ def main(argv: Sequence[str]) -> int:
   for name, picture in pictures.items():
     print(png.write(folder / name, picture))
   return 0
+
+
+def _envelope(
+  folder: pathlib.Path, sweeps: Sequence[str]
+) -> list[pathlib.Path]:
+  rows = [
+    row for name in sweeps for row in sweep_runner.read(pathlib.Path(name))
+  ]
+  folder.mkdir(parents=True, exist_ok=True)
+  return figures.draw(envelope.panels(rows), folder)
 
 
 def gestures(

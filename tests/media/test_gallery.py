@@ -84,3 +84,23 @@ def test_the_command_makes_pictures_small_enough_to_commit(
   sizes = {path.name: path.stat().st_size for path in tmp_path.iterdir()}
   assert sizes.keys() == {'composite.png', 'gestures.png'}
   assert max(sizes.values()) < 300_000
+
+
+def test_the_envelope_of_a_sweep_is_drawn(tmp_path: pathlib.Path) -> None:
+  pytest.importorskip('matplotlib')
+  grids = '--grid=distance_m=1.0,1.3', '--grid=bearing_deg=0,20'
+  short = '--control=no_send', '--duration_s=0.08', '--observers=1'
+  for command in (
+    ['sweep', *grids, *short, '--workers=1', '--output=flown'],
+    ['gallery', '--sweep=flown', '--output=pictures'],
+  ):
+    subprocess.run(
+      [sys.executable, '-m', 'waggle_tasks.experiments.main', *command],
+      check=True,
+      capture_output=True,
+      cwd=tmp_path,
+    )
+  picture = read(tmp_path / 'pictures' / 'envelope.png')
+  assert min(picture.shape[:2]) > 200
+  assert np.ptp(picture) > 200
+  assert (tmp_path / 'pictures' / 'envelope.svg').exists()
