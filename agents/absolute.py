@@ -10,7 +10,6 @@ from waggle_tasks.agents import config as config_lib
 from waggle_tasks.agents import difference, hover, klt
 from waggle_tasks.agents import ghost as ghost_lib
 
-_SWAYING = 2  # Over how many times as many images speed is then measured.
 _SWAYS = 75  # Images in which the camera's fastest sway counts.
 _REPAIRS = 25  # Images that the background behind the hover is made from.
 # A target that is sought in the whole picture must be this much of itself.
@@ -93,11 +92,8 @@ class Follower:
     self._background.loosen(departure.slack_px)
     self._repairs = 1
     self._centre_px = departure.ghost.anchor_px
-    frames = config.speed_frames
-    if departure.slack_px:
-      frames *= _SWAYING
-    if self._detector.noise > config.speed_noise:
-      frames = round(frames * self._detector.noise / config.speed_noise)
+    calm = self._detector.noise <= config.speed_noise and not departure.slack_px
+    frames = config.speed_frames if calm else config.rough_frames
     self._recent: deque[tuple[float, float, float]] = deque(maxlen=frames)
     self._shifts: deque[tuple[float, float, float]] = deque(maxlen=frames)
     self._sways: deque[float] = deque(maxlen=_SWAYS)

@@ -27,7 +27,7 @@ _MIN_FIT = 0.5  # Share of pixels that must.
 _MIN_RANGE = 8.0  # Grey levels; a reference of fewer tells nothing.
 _GAINS = (0.25, 4.0)
 # Less is left alone, and what noise would do with so many deviations.
-_STILL_PX, _STILL_LEVELS, _SIGMAS = 0.1, 1.0, 6.0
+_STILL_PX, _STILL_LEVELS, _SIGMAS = 0.25, 1.0, 12.0
 _REST_PX = 0.03  # A camera that swayed is at rest within this.
 _NOTHING = np.array([0.0, 0.0, 1.0, 0.0])  # x, y, gain, offset.
 

@@ -98,7 +98,8 @@ class Differencing:
       they are aligned...
     rest_px: ...and how far a target may sway before it has ever moved.
     speed_frames: Over how many images speed is measured...
-    speed_noise: ...in noise up to this; over more of them in more.
+    speed_noise: ...in noise up to this...
+    rough_frames: ...and over how many in more, or when the camera sways.
     gate_widths: Half the side of the square around the target in which it is
       looked for, in apparent widths...
     gate_px: ...and so many pixels more.
@@ -120,7 +121,8 @@ class Differencing:
   slack_px: float = 1.0
   rest_px: float = 4.0
   speed_frames: int = 10
-  speed_noise: float = 8.0
+  speed_noise: float = 4.0
+  rough_frames: int = 20
   gate_widths: float = 0.9
   gate_px: float = 8.0
   lost_share: float = 0.1

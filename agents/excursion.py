@@ -18,6 +18,7 @@ class ExcursionSegmenter:
 
   Attributes:
     active: Whether a gesture is under way.
+    returned: Whether a gesture may be over: it is back, and slow.
   """
 
   def __init__(
@@ -42,7 +43,7 @@ class ExcursionSegmenter:
     self._path: list[klt.Track] = []
     self._away_since_s = self._slow_since_s = self._back_since_s = math.nan
     self._lost_since_s, self._lost_frames = math.nan, 0
-    self.active = False
+    self.active = self.returned = False
 
   def step(self, track: klt.Track) -> segmenter.Segment | None:
     """Takes one frame's track.
@@ -59,7 +60,7 @@ class ExcursionSegmenter:
       return self._rest(track, away)
     self._path.append(track)
     slow = track.speed_px_s < config.off_px_s
-    back = slow and not away
+    self.returned = back = slow and not away
     self._slow_since_s = _since(self._slow_since_s, slow, now_s)
     self._back_since_s = _since(self._back_since_s, back, now_s)
     if config_lib.lasted(self._back_since_s, now_s, config.off_s):
@@ -79,6 +80,7 @@ class ExcursionSegmenter:
     self._lost_since_s = _since(self._lost_since_s, True, now_s)
     self._lost_frames += 1
     self._slow_since_s = self._back_since_s = math.nan
+    self.returned = False
     if track.outside:
       where = 'out of the picture'
       lost = config_lib.lasted(self._lost_since_s, now_s, config.outside_s)

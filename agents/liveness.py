@@ -11,8 +11,8 @@ from collections import deque
 import numpy as np
 import xxhash
 
-_IMAGES = 25  # So many in a row, at rest and all new, are no accident...
-_WINDOW = 25  # ...and of so many, the share of old ones counts.
+_IMAGES = 50  # Over so many a camera is judged, which is less than any null.
+_FEW = 0.2  # A camera that repeats no more at rest never repeats by itself.
 
 
 class Liveness:
@@ -27,24 +27,18 @@ class Liveness:
     """
     self._max_repeated = max_repeated
     self._seen: set[int] = set()
-    self._repeated: deque[bool] = deque(maxlen=_WINDOW)
-    self._new_in_a_row = 0
-    self._changes_at_rest = False
+    self._repeated: deque[bool] = deque(maxlen=_IMAGES)
+    self._always_new = False
 
-  def step(self, image: np.ndarray, resting: bool) -> bool:
-    """Takes an image and tells whether the camera may live.
+  def step(self, image: np.ndarray) -> None:
+    """Takes an image of any shape."""
+    if self._max_repeated < 1:
+      name = xxhash.xxh3_64_intdigest(np.ascontiguousarray(image))
+      self._repeated.append(name in self._seen)
+      self._seen.add(name)
 
-    Args:
-      image: Of any shape.
-      resting: Whether nothing that is looked at moves in it.
-    """
-    if self._max_repeated >= 1:
-      return True
-    name = xxhash.xxh3_64_intdigest(np.ascontiguousarray(image))
-    self._repeated.append(name in self._seen)
-    self._seen.add(name)
-    new = resting and not self._repeated[-1]
-    self._new_in_a_row = self._new_in_a_row + 1 if new else 0
-    self._changes_at_rest |= self._new_in_a_row >= _IMAGES
-    share = sum(self._repeated) / _WINDOW
-    return not self._changes_at_rest or share <= self._max_repeated
+  def lives(self) -> bool:
+    """Whether the camera may live, asked while what it shows is at rest."""
+    share = sum(self._repeated) / _IMAGES
+    self._always_new |= share <= _FEW
+    return not self._always_new or share <= self._max_repeated

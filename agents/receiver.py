@@ -108,12 +108,12 @@ class StagedReceiver:
     if self.segment is not None:
       recognition = self._recogniser.recognise(self.segment)
       events.append(self._event(time_s, recognition.symbol, recognition))
-    resting = self.track.valid and not watcher.moving
-    live = self._liveness.step(image, resting)
-    if self._stillness.step(
-      self.track, watcher.anchor_px, watcher.moving, live
-    ):
-      events.append(self._event(time_s, Symbol.NULL, None))
+    self._liveness.step(image)
+    if self._stillness.step(self.track, watcher.anchor_px, watcher.moving):
+      if self._liveness.lives():
+        events.append(self._event(time_s, Symbol.NULL, None))
+      else:
+        self._stillness.begin()
     return tuple(events)
 
   def _event(

@@ -27,12 +27,12 @@ class StillnessDetector:
     self._last_s = -math.inf
     self._confirmed = False
 
+  def begin(self) -> None:
+    """Begins a rest anew, whatever there was."""
+    self._since_s, self._confirmed = math.nan, False
+
   def step(
-    self,
-    track: klt.Track,
-    anchor_px: np.ndarray | None,
-    moving: bool,
-    live: bool = True,
+    self, track: klt.Track, anchor_px: np.ndarray | None, moving: bool
   ) -> bool:
     """Takes one frame's track.
 
@@ -40,7 +40,6 @@ class StillnessDetector:
       track: The target; a valid one has the tracking quality asked for.
       anchor_px: (2,) where the target was first, or None.
       moving: Whether a gesture is under way.
-      live: Whether the image is no repetition.
 
     Returns:
       Whether this frame confirms a null.
@@ -50,7 +49,6 @@ class StillnessDetector:
       self._confirmed = False
     still = (
       not moving
-      and live
       and track.valid
       and track.quality >= self._config.null_quality
       and gap_s <= self._max_gap_s

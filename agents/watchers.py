@@ -70,8 +70,9 @@ class AbsoluteWatcher:
 
   @property
   def moving(self) -> bool:
-    """See `Watcher`."""
-    return self._segmenter is not None and self._segmenter.active
+    """See `Watcher`; a rest counts from where it began."""
+    cut = self._segmenter
+    return cut is not None and cut.active and not cut.returned
 
   def step(
     self, image: np.ndarray, time_s: float

@@ -353,3 +353,19 @@ def test_the_envelope(
     message_path(bits), MESSAGE_S, distance_m, angle_deg, sigma=sigma
   )
   assert messages(events) == [bits]
+
+
+def test_a_camera_that_freezes_after_the_last_gesture_gives_no_message() -> (
+  None
+):
+  path, end_s = message_path('000010'), MESSAGE_S - PAUSES.pause_s - 0.4
+  last = []
+
+  def freeze(image: np.ndarray, time_s: float) -> np.ndarray:
+    if time_s < end_s + 1.0:
+      last[:] = [image]
+    return last[0]
+
+  read = functools.partial(watch, path, MESSAGE_S, sigma=5, spoil=freeze)
+  assert messages(read()) == []
+  assert messages(read(name='view_bank:max_repeated=1')) == ['000010']
