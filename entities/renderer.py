@@ -57,6 +57,7 @@ class _Canvas:
     boxes: (M, 4) windows that hold the parts.
     shown: The windows of the picture, each with the parts that it holds.
     looks: Version of the model's looks in it; 0 when nothing was drawn.
+    lens: See `Renderer._lens`.
   """
 
   pixels: np.ndarray
@@ -69,6 +70,7 @@ class _Canvas:
     default_factory=dict
   )
   looks: int = 0
+  lens: tuple[float, float, bool] | None = None
 
 
 class Renderer:
@@ -153,7 +155,7 @@ class Renderer:
     anew = not (incremental and began) or eye_moved or self._spills
     if anew or moved.size:
       which = np.arange(len(canvas.poses)) if anew else moved
-      canvas.boxes[which] = self._project(camera_id, canvas, which)
+      canvas.boxes[which] = self._project(canvas, which)
       with self._physics.contexts.gl.make_current() as context:
         context.call(self._redraw, camera_id, canvas, moved, anew)
     return canvas.pixels
@@ -183,6 +185,7 @@ class Renderer:
       canvas.places = np.empty((len(geoms), 3)), np.empty((len(geoms), 9))
       canvas.boxes = np.empty((len(bodies), 4), int)
       canvas.looks, canvas.shown = self._looks_version, {}
+      canvas.lens = self._lens(camera_id)
     far = np.abs(canvas.poses - poses).max(axis=1, initial=0.0) > _STILL
     moved = np.flatnonzero(far)
     if moved.size:
@@ -280,20 +283,24 @@ class Renderer:
       camera.frustum_top = half_height * (1 - 2 * top / HEIGHT)
       camera.frustum_bottom = half_height * (1 - 2 * bottom / HEIGHT)
 
-  def _project(
-    self, camera_id: int, canvas: _Canvas, parts: np.ndarray
-  ) -> np.ndarray:
+  def _project(self, canvas: _Canvas, parts: np.ndarray) -> np.ndarray:
     """Windows (K, 4) int that hold parts (K,); empty when out of view."""
-    model, poses = self._model, canvas.poses[parts]
+    poses = canvas.poses[parts]
     rotation = poses[:, 3:].reshape(-1, 3, 3)
     corners = self._corners_m[parts] @ rotation.swapaxes(1, 2)  # (K, 8, 3)
     from_eye = corners + (poses[:, :3] - canvas.eye[:3])[:, None]
     in_eye = from_eye @ canvas.eye[3:].reshape(3, 3)
-    near = model.vis.map.znear * model.stat.extent
-    fovy = model.cam_fovy[camera_id]
-    focal_px = HEIGHT / 2 / math.tan(math.radians(fovy) / 2)
+    near_m, focal_px, flat = canvas.lens
+    if flat:  # As if everything were 1 m away.
+      in_eye[..., 2] = -1.0
+    return windows.around(in_eye, near_m, focal_px, (WIDTH, HEIGHT))
+
+  def _lens(self, camera_id: int) -> tuple[float, float, bool]:
+    """Distance of the near plane, focal length in px, whether orthographic."""
+    model = self._model
+    near_m = float(model.vis.map.znear * model.stat.extent)
+    fovy = float(model.cam_fovy[camera_id])
     orthographic = mujoco.mjtProjection.mjPROJ_ORTHOGRAPHIC
     if model.cam_projection[camera_id] == orthographic:
-      # Its `fovy` is the picture's height in m, whatever the depth: as 1 m.
-      in_eye[..., 2], focal_px = -1.0, HEIGHT / fovy
-    return windows.around(in_eye, near, focal_px, (WIDTH, HEIGHT))
+      return near_m, HEIGHT / fovy, True  # `fovy` is the picture's height in m.
+    return near_m, HEIGHT / 2 / math.tan(math.radians(fovy) / 2), False

@@ -84,8 +84,11 @@ class Broadcast(composer.Task):
   def after_compile(
     self, physics: mjcf.Physics, random_state: np.random.RandomState
   ) -> None:
-    """Finds the vehicles' actuators in the compiled model."""
+    """Finds the vehicles' joints and actuators in the compiled model."""
     del random_state
+    joints, axes = physics.bind(self._joints).element_id, np.arange(3)
+    self._places = physics.model.jnt_qposadr[joints][:, None] + axes  # (N, 3)
+    self._rates = physics.model.jnt_dofadr[joints][:, None] + axes  # (N, 3)
     for each in self._controllers.values():
       each.after_compile(physics)
 
@@ -263,12 +266,12 @@ class Broadcast(composer.Task):
 
   def positions_m(self, physics: mjcf.Physics) -> dict[str, np.ndarray]:
     """True position of every vehicle, (3,) world metres, by its name."""
-    positions = np.array(physics.bind(self._joints).qpos).reshape(-1, 7)[:, :3]
+    positions = physics.data.qpos[self._places]
     return dict(zip(self._vehicles, positions, strict=True))
 
   def velocities_mps(self, physics: mjcf.Physics) -> dict[str, np.ndarray]:
     """True velocity of every vehicle, (3,) world m/s, by its name."""
-    velocities = np.array(physics.bind(self._joints).qvel).reshape(-1, 6)[:, :3]
+    velocities = physics.data.qvel[self._rates]
     return dict(zip(self._vehicles, velocities, strict=True))
 
   def drifts_m(self) -> dict[str, np.ndarray]:
