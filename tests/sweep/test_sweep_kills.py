@@ -25,7 +25,7 @@ def command(folder: pathlib.Path, workers: int) -> list[str]:
   return [sys.executable, '-m', module, *given]
 
 
-@pytest.fixture(params=[1, 2])
+@pytest.fixture(params=[pytest.param(1, marks=pytest.mark.slow), 2])
 def launched(
   request: pytest.FixtureRequest, sweep: object, session: Session
 ) -> Iterator[Launched]:
