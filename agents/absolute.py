@@ -96,7 +96,7 @@ class Follower:
     frames = config.speed_frames if calm else config.rough_frames
     self._recent: deque[tuple[float, float, float]] = deque(maxlen=frames)
     self._shifts: deque[tuple[float, float, float]] = deque(maxlen=frames)
-    self._sways: deque[float] = deque(maxlen=_SWAYS)
+    self._sways_px_s: deque[float] = deque(maxlen=_SWAYS)
     self._seen_s = math.inf
 
   def lost_s(self, time_s: float) -> float:
@@ -131,9 +131,9 @@ class Follower:
     self._centre_px, self._seen_s = centre_px, time_s
     self._recent.append((time_s, *centre_px))
     self._shifts.append((time_s, *self._alignment.shift_px))
-    self._sways.append(_speed(self._shifts))
+    self._sways_px_s.append(_speed(self._shifts))
     # Where the whole room moves, a target at rest does too, by parallax.
-    speed_px_s = max(_speed(self._recent) - max(self._sways), 0.0)
+    speed_px_s = max(_speed(self._recent) - max(self._sways_px_s), 0.0)
     support = cv2.countNonZero(weights)
     return klt.Track(
       time_s, centre_px, speed_px_s, support, min(share, 1.0), True

@@ -14,8 +14,6 @@ import numpy as np
 
 from waggle_tasks.agents import difference
 
-_SOFT_PX = 5  # Pictures are averaged over this side, which widens edges.
-_EDGE_CELL_PX = 16  # In each cell of this side the steepest pixel is used...
 _STEEP = 2.0  # Edges are of so many grey levels per pixel...
 _USUAL = 8.0  # ...and so many times the usual.
 _STEPS = 5  # Of Gauss and Newton, at most.
@@ -69,7 +67,7 @@ class Alignment:
       edges: Where to look.
     """
     self._reference = difference.grey(image)
-    soft = _soften(self._reference)
+    soft = difference.soften(self._reference)
     rows, columns, self.tells_shifts = _telling(soft, edges)
     self._places_px = np.stack([columns, rows]).astype(np.float32)  # (2, K)
     self._index = rows * soft.shape[1] + columns  # (K,)
@@ -112,7 +110,7 @@ class Alignment:
     Returns:
       Whether it is one.
     """
-    fit, share, limit = self._solve(_soften(grey))
+    fit, share, limit = self._solve(difference.soften(grey))
     if share < _MIN_FIT or not _GAINS[0] < fit[2] < _GAINS[1]:
       self._fit = _NOTHING
       return False
@@ -181,10 +179,6 @@ def _outlier(residual: np.ndarray) -> float:  # (K,)
 def _small(light: np.ndarray) -> bool:  # (K,)
   """Whether a change of light is small, in grey levels."""
   return bool(np.abs(light).mean() < _STILL_LEVELS)
-
-
-def _soften(grey: np.ndarray) -> np.ndarray:
-  return cv2.blur(grey, (_SOFT_PX, _SOFT_PX))
 
 
 def _telling(

@@ -11,6 +11,7 @@ import numpy as np
 from waggle_tasks.agents import config as config_lib
 from waggle_tasks.agents import noise as noise_lib
 
+_SOFT_PX = 5  # Side over which a soft picture is averaged.
 _MERGE_PX = 7  # Differences as near as this belong together.
 Box = tuple[slice, slice]
 WHOLE: Box = slice(None), slice(None)
@@ -20,6 +21,11 @@ def grey(image: np.ndarray, box: Box = WHOLE) -> np.ndarray:
   """A part of an image, (H, W, 3) RGB or (H, W) grey, in grey."""
   part = image[box]
   return part if part.ndim == 2 else cv2.cvtColor(part, cv2.COLOR_RGB2GRAY)
+
+
+def soften(grey: np.ndarray) -> np.ndarray:
+  """A picture (H, W) with less noise and wider edges."""
+  return cv2.blur(grey, (_SOFT_PX, _SOFT_PX))
 
 
 def slopes(grey: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -10,7 +10,6 @@ from waggle_tasks.agents import config as config_lib
 from waggle_tasks.agents import noise as noise_lib
 
 _CONTRAST_PX = 96  # Side of the square in which there must be something.
-_SOFT_PX = 5  # Side over which a picture is averaged to be without noise.
 _REST_PX = 128  # Side of the square in which a target rests.
 _MIN_PIXELS = 4  # Fewest pixels of a motion.
 
@@ -83,7 +82,7 @@ class Hover:
     self._know_target(grey)
     self._sum = grey.astype(np.float32)
     self._count, self._since_s = 1, time_s
-    smooth = cv2.blur(grey[_middle(grey, _CONTRAST_PX)], (5, 5))
+    smooth = difference.soften(grey[_middle(grey, _CONTRAST_PX)])
     self._contrast = bool(np.ptp(smooth) >= self._config.min_contrast)
 
   def _loosen(self, slack_px: float) -> None:
@@ -99,10 +98,10 @@ class Hover:
     if self._count == 1:
       noise = noise_lib.Noise(self._first.grey, grey)
       self._detector = difference.Detector(self._config, noise)
-      soft = cv2.blur(self._first.grey, (_SOFT_PX, _SOFT_PX))
+      soft = difference.soften(self._first.grey)
       self._first.variance = self._detector.background(soft).variance
     moved = self._moved(grey[middle], self._first[middle], 2.0)
-    if moved and not self._sways(grey):
+    if moved and not self._hardly_moved(grey):
       return False
     cv2.accumulate(grey, self._sum)
     self._count += 1
@@ -152,7 +151,7 @@ class Hover:
     rest = grey[_middle(grey, _REST_PX)]
     self._target = alignment.Alignment(rest, alignment.TARGET)
 
-  def _sways(self, grey: np.ndarray) -> bool:
+  def _hardly_moved(self, grey: np.ndarray) -> bool:
     """Whether what has moved is the target, and hardly."""
     target = self._target
     known = target.find(grey[_middle(grey, _REST_PX)])
@@ -160,10 +159,10 @@ class Hover:
     return target.tells_shifts and known and near
 
   def _separate(self, grey: np.ndarray, time_s: float) -> Departure | None:
-    separation, sways = self._separation, self._sways(grey)
+    separation, resting = self._separation, self._hardly_moved(grey)
     separation.add(grey, time_s)
-    self.visible = sways and self._contrast
-    if not sways and (found := separation.find()):
+    self.visible = resting and self._contrast
+    if not resting and (found := separation.find()):
       return Departure(
         self._alignment, self._detector, self._background, self._slack_px,
         found, separation.greys,
@@ -171,7 +170,7 @@ class Hover:
     if not self._moved(grey, self._background, 1.0):
       self._separation = None
     elif config_lib.lasted(self._since_s, time_s, self._config.separate_s):
-      if sways:
+      if resting:
         self._separation = None
       else:
         self._forget()

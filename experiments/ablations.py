@@ -7,7 +7,7 @@ final confirmation (section 'Limitations and next simulation experiments').
 from collections.abc import Mapping, Sequence
 import dataclasses
 
-from waggle_tasks.experiments import table, variant_runner
+from waggle_tasks.experiments import evaluator, table, variant_runner
 
 Row = Mapping[str, object]
 
@@ -72,23 +72,14 @@ class _Counts:
 
   @classmethod
   def of(cls, rows: Sequence[Row]) -> '_Counts':
-    outcomes = [outcome for row in rows for outcome in row['outcomes']]
+    outcomes = [
+      evaluator.Outcome(**fields) for row in rows for fields in row['outcomes']
+    ]
     return cls(
       sum(row['correct'] for row in rows),
-      sum(_is_wrong(outcome) for outcome in outcomes),
-      sum(_has_moved(outcome) for outcome in outcomes),
+      sum(outcome.wrong for outcome in outcomes),
+      sum(outcome.unauthorised for outcome in outcomes),
     )
-
-
-def _is_wrong(outcome: Mapping[str, object]) -> bool:
-  decoded = outcome['decoded']
-  return decoded is not None and decoded != outcome['expected']
-
-
-def _has_moved(outcome: Mapping[str, object]) -> bool:
-  early = any(f.startswith('premature motion') for f in outcome['failures'])
-  astray = outcome['decoded'] is None or _is_wrong(outcome)
-  return early or (astray and outcome['start_s'] is not None)
 
 
 def report(results: variant_runner.Results) -> str:

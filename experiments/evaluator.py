@@ -21,6 +21,7 @@ from waggle_tasks.tasks import progress, safety
 # alphabet and message framing').
 NUM_EVENTS = 17
 NUM_NULLS = 9
+_EARLY = 'premature motion'
 
 
 @dataclasses.dataclass(frozen=True)
@@ -57,6 +58,17 @@ class Outcome:
   def correct(self) -> bool:
     """Whether it read what was sent to it."""
     return self.expected is not None and self.decoded == self.expected
+
+  @property
+  def wrong(self) -> bool:
+    """Whether it read a message that was not sent to it."""
+    return self.decoded not in (None, self.expected)
+
+  @property
+  def unauthorised(self) -> bool:
+    """Whether it left its place without the message that was sent to it."""
+    early = any(each.startswith(_EARLY) for each in self.failures)
+    return early or (self.start_s is not None and not self.correct)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -224,7 +236,7 @@ def _early_motion(
   if not early.any():
     return []
   first_s = rollout.times_s[early.argmax()]
-  return [f'premature motion: {away_m[early].max():.3f} m from {first_s:.2f} s']
+  return [f'{_EARLY}: {away_m[early].max():.3f} m from {first_s:.2f} s']
 
 
 def _frame(events: Sequence[receiver.Event], bits: str) -> list[str]:

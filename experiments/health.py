@@ -11,9 +11,8 @@ import shutil
 from packaging import requirements, specifiers
 
 from waggle_tasks import runtime
-from waggle_tasks.experiments import gl
+from waggle_tasks.experiments import dependencies, gl
 
-DISTRIBUTION = 'waggle-tasks'
 # Three observers' images of a broadcast, recorded without loss, are 0.3 GB:
 # 42 KB a frame, 25 frames a second, 97 s. One GB leaves room for a few.
 FREE_GB = 1.0
@@ -59,16 +58,16 @@ def check_requirement(line: str, version: str | None) -> Check:
 def check_versions() -> Iterator[Check]:
   """Checks python and every dependency that the installed package declares."""
   try:
-    declared = metadata.metadata(DISTRIBUTION)
+    declared = metadata.metadata(dependencies.DISTRIBUTION)
   except metadata.PackageNotFoundError:
-    yield Check(f'{DISTRIBUTION} is not installed', 'pip install -e .')
+    yield Check(
+      f'{dependencies.DISTRIBUTION} is not installed', 'pip install -e .'
+    )
     return
-  yield Check(f'{DISTRIBUTION} {declared["Version"]}')
+  yield Check(f'{dependencies.DISTRIBUTION} {declared["Version"]}')
   yield check_python(platform.python_version(), declared['Requires-Python'])
-  for line in declared.get_all('Requires-Dist', []):
-    need = requirements.Requirement(line)
-    if need.marker is None or need.marker.evaluate({'extra': ''}):
-      yield check_requirement(line, runtime.installed(need.name))
+  for need in dependencies.declared():
+    yield check_requirement(str(need), runtime.installed(need.name))
 
 
 def check_rendering(timeout_s: float, versions_ok: bool) -> Iterator[Check]:

@@ -12,11 +12,7 @@ import shlex
 
 import waggle_tasks
 from waggle_tasks import agents, arenas, entities, errors, experiments
-
-_DISTRIBUTIONS = (
-  'absl-py', 'dm-control', 'dm-env', 'mujoco', 'numpy',
-  'opencv-python-headless', 'scipy', 'tqdm', 'xxhash',
-)  # fmt: skip
+from waggle_tasks.experiments import dependencies
 
 
 class SourceError(errors.WaggleError):
@@ -64,8 +60,8 @@ def versions() -> dict[str, str]:
     'waggle-tasks': waggle_tasks.__version__,
     'python': platform.python_version(),
   }
-  for name in _DISTRIBUTIONS:
-    out[name] = importlib.metadata.version(name)
+  for need in dependencies.declared():
+    out[need.name] = importlib.metadata.version(need.name)
   return out
 
 

@@ -76,14 +76,13 @@ def _exposure(
   """What became of one observer, and where it stood."""
   x_m, y_m, _ = pose.position_m
   stages = [failure.partition(':')[0] for failure in outcome.failures]
-  misled = outcome.start_s is not None and not outcome.correct
   return {
     **records.to_json(outcome),
     'true_angle_deg': round(math.degrees(math.atan2(x_m, -y_m)), 6),
     'true_distance_m': round(math.hypot(x_m, y_m), 6),
     'right': outcome.decoded == outcome.expected,
-    'wrong': outcome.decoded not in (None, outcome.expected),
-    'unauthorised': misled or 'premature motion' in stages,
+    'wrong': outcome.wrong,
+    'unauthorised': outcome.unauthorised,
     'stages': stages,
   }
 

@@ -8,7 +8,7 @@ import sys
 
 import pytest
 
-from waggle_tasks.experiments import gl, health
+from waggle_tasks.experiments import dependencies, gl, health
 
 DOCTOR = 'from waggle_tasks.experiments import main; sys.exit(main.main())'
 
@@ -128,7 +128,7 @@ def test_every_declared_dependency_is_checked_and_no_extra() -> None:
 def test_a_package_that_is_not_installed_is_said_so(
   monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-  monkeypatch.setattr(health, 'DISTRIBUTION', 'no-such-distribution')
+  monkeypatch.setattr(dependencies, 'DISTRIBUTION', 'no-such-distribution')
   (check,) = health.check_versions()
   assert check == health.Check(
     'no-such-distribution is not installed', 'pip install -e .'

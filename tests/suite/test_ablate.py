@@ -1,5 +1,6 @@
 """What the receivers' parts are good for: the table and the command."""
 
+import dataclasses
 import pathlib
 import re
 import subprocess
@@ -8,7 +9,7 @@ import sys
 import pytest
 
 from waggle_tasks.agents import receivers
-from waggle_tasks.experiments import ablations
+from waggle_tasks.experiments import ablations, evaluator
 from waggle_tasks.protocol import gestures
 
 Row = dict[str, object]
@@ -37,10 +38,10 @@ def outcome(
   start_s: float | None = None,
   failures: tuple[str, ...] = (),
 ) -> Row:
-  return {
-    'decoded': decoded, 'expected': expected, 'start_s': start_s,
-    'failures': failures,
-  }  # fmt: skip
+  made = evaluator.Outcome(
+    'observer_0', expected, decoded, start_s=start_s, failures=failures
+  )
+  return dataclasses.asdict(made)
 
 
 READ = outcome('000010', start_s=95.6)
