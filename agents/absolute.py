@@ -92,8 +92,8 @@ class Follower:
     self._background.loosen(departure.slack_px)
     self._repairs = 1
     self._centre_px = departure.ghost.anchor_px
-    calm = self._detector.noise <= config.speed_noise and not departure.slack_px
-    frames = config.speed_frames if calm else config.rough_frames
+    noisy = self._detector.noise > config.speed_noise
+    frames = config.speed_frames * (1 + noisy + (departure.slack_px > 0))
     self._recent: deque[tuple[float, float, float]] = deque(maxlen=frames)
     self._shifts: deque[tuple[float, float, float]] = deque(maxlen=frames)
     self._sways_px_s: deque[float] = deque(maxlen=_SWAYS)
@@ -131,9 +131,11 @@ class Follower:
     self._centre_px, self._seen_s = centre_px, time_s
     self._recent.append((time_s, *centre_px))
     self._shifts.append((time_s, *self._alignment.shift_px))
-    self._sways_px_s.append(_speed(self._shifts))
+    if self._background.slack is not None:
+      self._sways_px_s.append(_speed(self._shifts))
     # Where the whole room moves, a target at rest does too, by parallax.
-    speed_px_s = max(_speed(self._recent) - max(self._sways_px_s), 0.0)
+    sway_px_s = max(self._sways_px_s, default=0.0)
+    speed_px_s = max(_speed(self._recent) - sway_px_s, 0.0)
     support = cv2.countNonZero(weights)
     return klt.Track(
       time_s, centre_px, speed_px_s, support, min(share, 1.0), True

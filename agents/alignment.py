@@ -24,8 +24,9 @@ _EXPLAINED = 0.5  # Of the range of levels; what is nearer than this fits.
 _MIN_FIT = 0.5  # Share of pixels that must.
 _MIN_RANGE = 8.0  # Grey levels; a reference of fewer tells nothing.
 _GAINS = (0.25, 4.0)
-# Less is left alone, and what noise would do with so many deviations.
-_STILL_PX, _STILL_LEVELS, _SIGMAS = 0.25, 1.0, 12.0
+_STILL_PX, _STILL_LEVELS = 0.1, 1.0  # Less is left alone...
+# ...and what so many median deviations do; a wrong guess costs time alone.
+_DEVIATIONS, _GUESS_DEVIATIONS = 20.0, 6.0
 _REST_PX = 0.03  # A camera that swayed is at rest within this.
 _NOTHING = np.array([0.0, 0.0, 1.0, 0.0])  # x, y, gain, offset.
 
@@ -110,11 +111,12 @@ class Alignment:
     Returns:
       Whether it is one.
     """
-    fit, share, limit = self._solve(difference.soften(grey))
+    fit, share, scatter = self._solve(difference.soften(grey))
     if share < _MIN_FIT or not _GAINS[0] < fit[2] < _GAINS[1]:
       self._fit = _NOTHING
       return False
-    shift_px, still_px = np.abs(fit[:2]).max(), self._still_px(limit)
+    shift_px = np.abs(fit[:2]).max()
+    still_px = self._still_px(_DEVIATIONS * scatter)
     self._sways |= bool(shift_px > still_px)
     if shift_px < (_REST_PX if self._sways else still_px):
       fit[:2] = 0.0
@@ -128,25 +130,27 @@ class Alignment:
     in_a_row = image.reshape(1, self._reference.size, *image.shape[2:])
     seen = difference.grey(in_a_row[:, self._index])[0]
     change = seen - self._sharp
-    limit = _outlier(change)
+    scatter = _scatter(change)
+    limit = _outlier(scatter)
     guess = self._inverse @ np.clip(change, -limit, limit)
     light = guess[2] * self._sharp + guess[3]
-    still = np.abs(guess[:2]).max() < self._still_px(limit)
+    still_px = self._still_px(_GUESS_DEVIATIONS * scatter)
+    still = np.abs(guess[:2]).max() < still_px
     return bool(still and _small(light))
 
-  def _still_px(self, limit: float) -> float:
-    """The largest shift that may be none, by the limit of outliers."""
-    return max(_STILL_PX, _SIGMAS * limit / _OUTLIER * self._spread)
+  def _still_px(self, levels: float) -> float:
+    """The largest shift that pixels wrong by so many grey levels may feign."""
+    return max(_STILL_PX, levels * self._spread)
 
   def _solve(self, soft: np.ndarray) -> tuple[np.ndarray, float, float]:
     """How an image differs, (4,).
 
-    Also the share of pixels that it fits, and the limit of those that do not.
+    Also the share of pixels that it fits, and the scatter of residuals.
     """
     fit, table = self._fit.copy(), self._table.copy()
     for _ in range(_STEPS):
       residual = self._residual(soft, fit)
-      fits = np.abs(residual) <= _outlier(residual)
+      fits = np.abs(residual) <= _outlier(_scatter(residual))
       table[:2] = fit[2] * self._table[:2]
       step = np.linalg.lstsq(table[:, fits].T, residual[fits], rcond=1e-6)[0]
       fit += step
@@ -154,7 +158,7 @@ class Alignment:
         break
     residual = self._residual(soft, fit)
     explained = np.abs(residual) < _EXPLAINED * fit[2] * self._range
-    return fit, float(explained.mean()), _outlier(residual)
+    return fit, float(explained.mean()), _scatter(residual)
 
   def _residual(self, soft: np.ndarray, fit: np.ndarray) -> np.ndarray:
     """What an image has more than the reference brought to it, (K,)."""
@@ -171,9 +175,14 @@ class Alignment:
     return _shifted(grey, x, y, self._reference) if self.moving else grey
 
 
-def _outlier(residual: np.ndarray) -> float:  # (K,)
-  """Larger ones do not belong to the rest."""
-  return max(_OUTLIER * float(np.median(np.abs(residual))), _OUTLIER_LEVELS)
+def _scatter(residual: np.ndarray) -> float:  # (K,)
+  """The median deviation from zero, which the few that do not fit leave."""
+  return float(np.median(np.abs(residual)))
+
+
+def _outlier(scatter: float) -> float:
+  """Residuals that are larger do not belong to the rest."""
+  return max(_OUTLIER * scatter, _OUTLIER_LEVELS)
 
 
 def _small(light: np.ndarray) -> bool:  # (K,)

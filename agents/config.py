@@ -97,9 +97,9 @@ class Differencing:
     slack_px: How far pictures of a camera that sways may be out of place once
       they are aligned...
     rest_px: ...and how far a target may sway before it has ever moved.
-    speed_frames: Over how many images speed is measured...
-    speed_noise: ...in noise up to this...
-    rough_frames: ...and over how many in more, or when the camera sways.
+    speed_frames: Over how many images speed is measured; as many more in noise,
+      and when the camera sways.
+    speed_noise: Up to this it is none, in grey levels.
     gate_widths: Half the side of the square around the target in which it is
       looked for, in apparent widths...
     gate_px: ...and so many pixels more.
@@ -122,7 +122,6 @@ class Differencing:
   rest_px: float = 4.0
   speed_frames: int = 10
   speed_noise: float = 4.0
-  rough_frames: int = 20
   gate_widths: float = 0.9
   gate_px: float = 8.0
   lost_share: float = 0.1

@@ -47,9 +47,9 @@ def lines(panel: envelope.Panel) -> list[str]:
   fit = logistic.fit(varying, right)
   if fit is None:
     return [
-      f'{head}no logistic fit: {" and ".join(varying)} separate success from'
-      f' failure ({right.sum()} of {len(right)} succeeded), so that the'
-      ' likelihood has no maximum.'
+      f'{head}no logistic fit: success and failure are separated by'
+      f' {" and ".join(varying)} ({right.sum()} of {len(right)} succeeded),'
+      ' so that the likelihood has no maximum.'
     ]
   terms = [f'{slope:+.3g} {n}/{_UNITS[n]}' for n, slope in fit.slopes.items()]
   return [

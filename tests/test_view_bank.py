@@ -9,9 +9,12 @@ import cv2
 import numpy as np
 import pytest
 
+from waggle_tasks import scenario
 from waggle_tasks.agents import receiver, receivers
+from waggle_tasks.experiments import evaluator, rollout
 from waggle_tasks.protocol import frame, gestures, payload, schedule, timing
 from waggle_tasks.protocol.symbols import Symbol
+from waggle_tasks.tasks import drift
 
 BOOK = gestures.v_codebook(duration_s=2.0)
 PAUSES = timing.Timing(3.2, 0.6, 2.0, 1.2)
@@ -189,6 +192,30 @@ def test_rendered_images_are_read(clip: object, short: dict) -> None:
   assert names(events) == 'NULL START NULL 0 NULL'
   assert max(errors_px) < 4
   assert len(errors_px) > 240
+
+
+def test_a_swaying_camera_reads_the_first_stroke(
+  load: Callable, episode: Callable, hover: Callable, short: dict
+) -> None:
+  environment = load(
+    observers=1, duration_s=9.4, drift=drift.Drift(0.0, 0.002, 0.1), **short
+  )
+  reader, events = receivers.make('view_bank', short['codebook']), []
+  for timestep in episode(environment, hover):
+    (own,) = timestep.observation
+    events += reader.step(own['camera'], float(own['time_s']))
+  assert names(events) == 'NULL START NULL'
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize('size', [(0.002, 0.1), (0.005, 0.3)])
+@pytest.mark.parametrize('seed', range(2))
+def test_swaying_cameras_read_the_message(
+  seed: int, size: tuple[float, float]
+) -> None:
+  scene = scenario.Scenario(seed=seed, drift=drift.Drift(0.0, *size))
+  verdict = evaluator.evaluate(scene, rollout.run(scene, 'view_bank'))
+  assert [each.decoded for each in verdict.outcomes] == ['000010'] * 3
 
 
 def test_black_images_are_read_as_nothing() -> None:

@@ -172,7 +172,7 @@ def test_a_fit_that_cannot_be_is_said_to_be_none(make: object) -> None:
     'no logistic fit: all 12 succeeded'
   )
   assert lines(lambda case: True) == 'no logistic fit: none of 12 succeeded.'
-  assert 'separate success from failure (8 of 12 succeeded)' in lines(
+  assert 'are separated by angle and distance (8 of 12 succeeded)' in lines(
     lambda case: case.values['bearing_deg'] > 30
   )
 
