@@ -138,8 +138,9 @@ class Follower:
     speed_px_s = max(_speed(self._recent) - sway_px_s, 0.0)
     support = cv2.countNonZero(weights)
     return klt.Track(
-      time_s, centre_px, speed_px_s, support, min(share, 1.0), True
-    )
+      time_s, centre_px, speed_px_s, support, min(share, 1.0), True,
+      width_px=self._ghost.width_px,
+    )  # fmt: skip
 
   def _lose(self, time_s: float, quality: float, outside: bool) -> klt.Track:
     self._recent.clear()

@@ -158,6 +158,8 @@ class Excursion:
     on_s: ...once it has been so for this long.
     off_px_s: Image speed below which it is at rest again (paper, section 'RGB
       optical flow')...
+    off_widths_s: ...or below so many apparent widths a second: whoever hovers
+      near sways by more pixels...
     off_s: ...once back for this long; shorter than the paper's, as speed is
       measured over several images...
     stay_s: ...or anywhere else for this long.
@@ -169,6 +171,7 @@ class Excursion:
   radius_px: float = 2.0
   on_s: float = 0.08
   off_px_s: float = 2.5
+  off_widths_s: float = 0.2
   off_s: float = 0.48
   stay_s: float = 3.0
   coast_frames: int = 5
@@ -177,6 +180,10 @@ class Excursion:
   def away_px(self, width_px: float) -> float:
     """How far from rest a target of this apparent width is away."""
     return max(self.radius_px, self.radius_widths * width_px)
+
+  def slow_px_s(self, width_px: float) -> float:
+    """The image speed below which a target of this apparent width rests."""
+    return max(self.off_px_s, self.off_widths_s * width_px)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -241,6 +248,8 @@ class Stillness(_Numbers):
     max_px_s: Largest image speed.
     hold_s: How long all of it must last.
     null_quality: Smallest tracking quality.
+    max_widths_s: Largest speed in apparent widths of the target a second, where
+      they are known and that is more; 0, as in the paper, for pixels alone.
     max_repeated: Largest share of images that were seen before, of a camera
       that never repeats one by itself; 1, as in the paper, asks for no life.
   """
@@ -249,7 +258,12 @@ class Stillness(_Numbers):
   max_px_s: float = 2.5
   hold_s: float = 3.0
   null_quality: float = 0.2
+  max_widths_s: float = 0.0
   max_repeated: float = 1.0
+
+  def slow_px_s(self, width_px: float | None) -> float:
+    """The largest speed of a target of this apparent width, or of unknown."""
+    return max(self.max_px_s, self.max_widths_s * (width_px or 0.0))
 
 
 @dataclasses.dataclass(frozen=True)
@@ -276,13 +290,12 @@ class Config:
 # Trackers and templates are chosen apart from each other.
 KLT = Config()
 KLT_BANK = Config(views=Views())
-ABSOLUTE = Config(Differencing(), Excursion())
-VIEW_BANK = Config(
+ABSOLUTE = Config(
   Differencing(),
   Excursion(),
-  stillness=Stillness(max_repeated=0.5),
-  views=Views(),
+  stillness=Stillness(max_widths_s=0.2, max_repeated=0.5),
 )
+VIEW_BANK = dataclasses.replace(ABSOLUTE, views=Views())
 
 
 def zoomed(config: _Group, factor: float) -> _Group:

@@ -35,6 +35,7 @@ class ExcursionSegmenter:
     self._home_px = home_px
     self._width_px = width_px
     self._radius_px = config.away_px(width_px)
+    self._slow_px_s = config.slow_px_s(width_px)
     self._begin()
 
   def _begin(self) -> None:
@@ -59,7 +60,7 @@ class ExcursionSegmenter:
     if not self.active:
       return self._rest(track, away)
     self._path.append(track)
-    slow = track.speed_px_s < config.off_px_s
+    slow = track.speed_px_s < self._slow_px_s
     self.returned = back = slow and not away
     self._slow_since_s = _since(self._slow_since_s, slow, now_s)
     self._back_since_s = _since(self._back_since_s, back, now_s)

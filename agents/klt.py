@@ -26,6 +26,7 @@ class Track:
     quality: Their share of those that were followed.
     valid: Whether the support is enough.
     outside: Whether it is lost because it has left the picture.
+    width_px: How wide the target was at rest, where the tracker knows.
   """
 
   time_s: float
@@ -35,6 +36,7 @@ class Track:
   quality: float
   valid: bool
   outside: bool = False
+  width_px: float | None = None
 
   def loss(self, config: config_lib.Tracking) -> str:
     """Why the frame is not valid."""

@@ -52,7 +52,7 @@ class StillnessDetector:
       and track.valid
       and track.quality >= self._config.null_quality
       and gap_s <= self._max_gap_s
-      and track.speed_px_s < self._config.max_px_s
+      and track.speed_px_s < self._config.slow_px_s(track.width_px)
       and np.hypot(*(track.centre_px - anchor_px)) <= self._config.anchor_px
     )
     if not still:

@@ -57,6 +57,29 @@ def test_a_rest_of_3_s_is_a_null_and_no_sooner() -> None:
   assert nulls(moved[:-1]) == []
 
 
+@pytest.mark.parametrize(
+  ('width_px', 'speed_px_s', 'rests'),
+  [(None, 2.4, True), (None, 2.6, False), (10.0, 2.4, True),
+   (10.0, 2.6, False), (50.0, 9.9, True), (50.0, 10.1, False)],
+)  # fmt: skip
+def test_speed_may_be_limited_in_apparent_widths(
+  width_px: float | None, speed_px_s: float, rests: bool
+) -> None:
+  limits = config.Stillness(max_widths_s=0.2)
+  detector = stillness.StillnessDetector(limits, 0.2)
+  found = [
+    detector.step(
+      klt.Track(
+        0.04 * index, ANCHOR_PX, speed_px_s, 20, 0.9, True, width_px=width_px
+      ),
+      ANCHOR_PX,
+      False,
+    )
+    for index in range(FRAMES + 1)
+  ]
+  assert any(found) is rests
+
+
 def test_a_rest_is_one_null_however_long() -> None:
   assert len(nulls([REST] * 2000)) == 1
 

@@ -194,12 +194,19 @@ def test_rendered_images_are_read(clip: object, short: dict) -> None:
   assert len(errors_px) > 240
 
 
-def test_a_swaying_camera_reads_the_first_stroke(
-  load: Callable, episode: Callable, hover: Callable, short: dict
+@pytest.mark.parametrize(
+  'sway',
+  [drift.Drift(0.0, 0.002, 0.1), drift.Drift(0.002)],
+  ids=['camera', 'dancer'],
+)
+def test_the_first_stroke_is_read_when_somebody_sways(
+  sway: drift.Drift,
+  load: Callable,
+  episode: Callable,
+  hover: Callable,
+  short: dict,
 ) -> None:
-  environment = load(
-    observers=1, duration_s=9.4, drift=drift.Drift(0.0, 0.002, 0.1), **short
-  )
+  environment = load(observers=1, seed=2, duration_s=9.4, drift=sway, **short)
   reader, events = receivers.make('view_bank', short['codebook']), []
   for timestep in episode(environment, hover):
     (own,) = timestep.observation

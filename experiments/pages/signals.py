@@ -55,7 +55,7 @@ def draw(
       panel(
         'speed', 'px/s, log', 110, _SLOWEST_PX_S, fastest,
         [plot.Line(speed, 'a')],
-        _speeds(config.motion), logarithmic=True,
+        _speeds(config.motion, _width_px(trace)), logarithmic=True,
       ),
       panel(
         'support', _support_unit(config.tracking), 60, 0.0, most,
@@ -120,12 +120,17 @@ def _qualities(tracking: _Tracking, rest: config_lib.Stillness) -> plot.Limits:
   )
 
 
-def _speeds(motion: config_lib.Motion | config_lib.Excursion) -> plot.Limits:
+def _speeds(
+  motion: config_lib.Motion | config_lib.Excursion, width_px: float | None
+) -> plot.Limits:
   """The speeds at which motions begin and end."""
   if isinstance(motion, config_lib.Excursion):
-    return plot.Limits(
-      [motion.off_px_s], f'motion ends under {motion.off_px_s:g} px/s'
-    )
+    slow_px_s = motion.off_px_s
+    rule = f'{motion.off_widths_s:g} widths/s, at least {slow_px_s:g} px/s'
+    if width_px is not None:
+      slow_px_s = motion.slow_px_s(width_px)
+      rule = f'{slow_px_s:.1f} px/s ({rule})'
+    return plot.Limits([slow_px_s], f'motion ends under {rule}')
   return plot.Limits(
     [motion.off_px_s, motion.on_px_s],
     f'motion begins over {motion.on_px_s:g} px/s and ends under'

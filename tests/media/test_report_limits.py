@@ -70,7 +70,10 @@ def test_an_absolute_track_has_limits_of_its_own(
     'a null stays within 15 px, a motion leaves its rest by'
     f' {away_px:.1f} px (0.12 widths, at least 2 px)'
   ) in run.words
-  assert 'dashed: motion ends under 2.5 px/s' in run.words
+  assert (
+    f'dashed: motion ends under {0.2 * motion.width_px:.1f} px/s'
+    ' (0.2 widths/s, at least 2.5 px/s)'
+  ) in run.words
   assert 'share seen of the target' in run.words
   assert 'a null needs 0.2, the track 0.1' in run.words
   assert f'\u2265 {span_px:.3g} (0.3 widths) \u2713' in run.words
@@ -97,13 +100,13 @@ def test_changed_numbers_are_those_of_the_page(
   runs: dict[str, Run], tmp_path: pathlib.Path
 ) -> None:
   _, config = receivers.configured(
-    'absolute:radius_px=7,off_px_s=3,min_span_widths=0.5,lost_share=0.3'
+    'absolute:radius_px=7,off_px_s=30,min_span_widths=0.5,lost_share=0.3'
   )
   run = runs['view_bank']
   trace = run.rollout.traces['observer_1']
   drawn = signals.draw(trace, 60.0, config)
   assert 'by 7.0 px (0.12 widths, at least 7 px)' in drawn
-  assert 'motion ends under 3 px/s' in drawn
+  assert 'under 30.0 px/s (0.2 widths/s, at least 30 px/s)' in drawn
   assert 'the track 0.3' in drawn
   events = [e for e in run.rollout.events['observer_1'] if e.time_s < 10][1:2]
   book = scenario.Scenario().codebook
