@@ -63,8 +63,8 @@ class Hover:
     if aligned is None:
       self._forget()
       return None
-    if self._alignment.moving:
-      self._loosen(self._config.slack_px)
+    if self._alignment.moving and not self._slack_px:
+      self._loosen()
     if self._separation is not None:
       return self._separate(difference.grey(aligned), time_s)
     if self._background is not None:
@@ -85,12 +85,11 @@ class Hover:
     smooth = difference.soften(grey[_middle(grey, _CONTRAST_PX)])
     self._contrast = bool(np.ptp(smooth) >= self._config.min_contrast)
 
-  def _loosen(self, slack_px: float) -> None:
-    """Allows everything to be out of place by so much."""
-    if slack_px > self._slack_px:
-      self._slack_px = slack_px
-      for each in filter(None, (self._first, self._background)):
-        each.loosen(slack_px)
+  def _loosen(self) -> None:
+    """Allows everything to be a little out of place from now on."""
+    self._slack_px = self._config.slack_px
+    for each in filter(None, (self._first, self._background)):
+      each.loosen(self._slack_px)
 
   def _learn(self, grey: np.ndarray, time_s: float) -> bool:
     """Adds an image to the background, unless something has moved."""
