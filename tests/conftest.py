@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterator, Sequence
 import dataclasses
 import math
 import pathlib
+import signal
 import time
 
 import dm_env
@@ -24,6 +25,15 @@ hypothesis.settings.load_profile('patient')
 
 Observations = Sequence[dict[str, np.ndarray]]
 Agent = Callable[[Observations], list[np.ndarray]]
+
+
+def pytest_configure() -> None:
+  """Takes Ctrl-C even where tests were begun in the background.
+
+  Shells start such commands with the signal ignored, and so are the processes
+  that they start in turn.
+  """
+  signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 @pytest.fixture(scope='session')
