@@ -40,16 +40,20 @@ class Edges:
     spared_px: None in a square of this side in the middle.
     fewest: Fewer tell nothing.
     grid: Along each side, more pixels that tell of light.
+    settles: Whether a shift that may be none is none.
   """
 
   cell_px: int
   spared_px: int
   fewest: int
   grid: int
+  settles: bool
 
 
-ROOM = Edges(16, 160, 24, 8)  # All but the target, which may move by itself.
-TARGET = Edges(4, 0, 8, 2)  # Of a picture of little else.
+# All but the target, which may move by itself.
+ROOM = Edges(16, 160, 24, 8, True)
+# Of a picture of little else.
+TARGET = Edges(4, 0, 8, 2, False)
 
 
 class Alignment:
@@ -67,6 +71,7 @@ class Alignment:
       image: (H, W, 3) uint8 RGB or (H, W) grey.
       edges: Where to look.
     """
+    self._settles = edges.settles
     self._reference = difference.grey(image)
     soft = difference.soften(self._reference)
     rows, columns, self.tells_shifts = _telling(soft, edges)
@@ -140,6 +145,8 @@ class Alignment:
 
   def _still_px(self, levels: float) -> float:
     """The largest shift that pixels wrong by so many grey levels may feign."""
+    if not self._settles:
+      return 0.0
     return max(_STILL_PX, levels * self._spread)
 
   def _solve(self, soft: np.ndarray) -> tuple[np.ndarray, float, float]:

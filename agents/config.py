@@ -171,7 +171,7 @@ class Excursion:
   radius_px: float = 2.0
   on_s: float = 0.08
   off_px_s: float = 2.5
-  off_widths_s: float = 0.2
+  off_widths_s: float = 0.15
   off_s: float = 0.48
   stay_s: float = 3.0
   coast_frames: int = 5
@@ -293,7 +293,7 @@ KLT_BANK = Config(views=Views())
 ABSOLUTE = Config(
   Differencing(),
   Excursion(),
-  stillness=Stillness(max_widths_s=0.2, max_repeated=0.5),
+  stillness=Stillness(max_widths_s=0.15, max_repeated=0.5),
 )
 VIEW_BANK = dataclasses.replace(ABSOLUTE, views=Views())
 

@@ -166,6 +166,12 @@ class Blobs:
     """(N,) the sum of other weights (H, W) in the place of each."""
     return np.bincount(self._labels.ravel(), weights.ravel(), self._count)
 
+  def inside(self, box: Box) -> np.ndarray:
+    """(N,) whether each has a part in a box of the picture."""
+    here = np.zeros(self._count, bool)
+    here[np.unique(self._labels[box])] = True
+    return here
+
   def only(self, picked: np.ndarray) -> np.ndarray:
     """Weights (H, W) of some of them, given their numbers."""
     return np.where(np.isin(self._labels, picked), self._weights, 0).astype(

@@ -50,6 +50,8 @@ class Separation:
     detector: difference.Detector,
     background: difference.Background,
     sigmas: float,
+    home: difference.Box,
+    near: difference.Box,
   ) -> None:
     """Begins with the first motion.
 
@@ -57,7 +59,11 @@ class Separation:
       detector: Weighs differences.
       background: (H, W) with the target in it.
       sigmas: How far above noise a difference must be.
+      home: Where the target hovers...
+      near: ...and where it is just after it has left: what changes elsewhere
+        is not its doing.
     """
+    self._home, self._near = home, near
     self._detector = detector
     self._background = background
     self._sigmas = sigmas
@@ -77,14 +83,15 @@ class Separation:
     before = difference.Background(grey_before, known.variance, known.slack)
     weigh, sigmas = self._detector.weights, self._sigmas
     blobs = difference.Blobs(weigh(grey, self._background, sigmas))
-    totals = blobs.totals
+    totals = np.where(blobs.inside(self._near), blobs.totals, 0.0)
     changes = blobs.sums(weigh(grey, before, sigmas, spread=2.0))
     large = totals > _MIN_SHARE * totals.max()
     still = large & (changes < _MAX_CHANGE * totals)
-    rest, motion = totals[still].sum(), totals[large & ~still].sum()
+    home = still & blobs.inside(self._home)
+    rest, motion = totals[home].sum(), totals[large & ~still].sum()
     if min(rest, motion) <= _MIN_BALANCE * max(rest, motion):
       return None
-    found = self._ghost(blobs.only(np.flatnonzero(still)))
+    found = self._ghost(blobs.only(np.flatnonzero(home)))
     return found if found.width_px >= _MIN_WIDTH_PX else None
 
   def _ghost(self, weights: np.ndarray) -> Ghost:

@@ -12,6 +12,7 @@ from waggle_tasks.agents import noise as noise_lib
 _CONTRAST_PX = 96  # Side of the square in which there must be something.
 _REST_PX = 128  # Side of the square in which a target rests.
 _MIN_PIXELS = 4  # Fewest pixels of a motion.
+_MAX_LEFT = 0.1  # Share of a change that a small motion may leave.
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -100,7 +101,7 @@ class Hover:
       soft = difference.soften(self._first.grey)
       self._first.variance = self._detector.background(soft).variance
     moved = self._moved(grey[middle], self._first[middle], 2.0)
-    if moved and not self._hardly_moved(grey):
+    if moved and not self._hardly_moved(grey, self._first, 2.0):
       return False
     cv2.accumulate(grey, self._sum)
     self._count += 1
@@ -122,8 +123,9 @@ class Hover:
       if self._moved(grey, self._background[middle], 1.0):
         self._since_s = time_s
         self._separation = ghost.Separation(
-          self._detector, self._strict(), self._config.watch_sigmas
-        )
+          self._detector, self._strict(), self._config.watch_sigmas,
+          _middle(image, _REST_PX), middle,
+        )  # fmt: skip
         return self._separate(difference.grey(image), time_s)
     self.visible = self._contrast
     return None
@@ -136,11 +138,17 @@ class Hover:
       slack[_middle(slack, _REST_PX)] = 0
     return difference.Background(known.grey, known.variance, slack)
 
+  def _change(
+    self, grey: np.ndarray, background: difference.Background, spread: float
+  ) -> np.ndarray:
+    """Weights (h, w) of a part's difference from what is behind it."""
+    sigmas = self._config.watch_sigmas
+    return self._detector.weights(grey, background, sigmas, spread)
+
   def _moved(
     self, grey: np.ndarray, background: difference.Background, spread: float
   ) -> bool:
-    sigmas = self._config.watch_sigmas
-    weights = self._detector.weights(grey, background, sigmas, spread)
+    weights = self._change(grey, background, spread)
     # In noise every difference is as large as the box that it is summed in.
     box_pixels = self._config.box_px**2 // 2
     least = box_pixels if self._detector.noisy else _MIN_PIXELS
@@ -150,15 +158,30 @@ class Hover:
     rest = grey[_middle(grey, _REST_PX)]
     self._target = alignment.Alignment(rest, alignment.TARGET)
 
-  def _hardly_moved(self, grey: np.ndarray) -> bool:
-    """Whether what has moved is the target, and hardly."""
-    target = self._target
-    known = target.find(grey[_middle(grey, _REST_PX)])
-    near = np.abs(target.shift_px).max() <= self._config.rest_px
-    return target.tells_shifts and known and near
+  def _hardly_moved(
+    self, grey: np.ndarray, background: difference.Background, spread: float
+  ) -> bool:
+    """Whether what has moved is the target, and hardly.
+
+    Then undoing its motion undoes the change; what is behind a target may tell
+    where it is too, but does not go with it.
+    """
+    box, target = _middle(grey, _REST_PX), self._target
+    undone = target.step(grey[box])
+    if undone is None or not target.tells_shifts:
+      return False
+    if np.abs(target.shift_px).max() > self._config.rest_px:
+      return False
+    behind = background[box]
+    loose = difference.Background(behind.grey, behind.variance)
+    loose.loosen(self._config.slack_px)
+    change = self._change(grey[box], behind, spread).sum()
+    left = self._change(undone, loose, spread).sum()
+    return bool(left <= _MAX_LEFT * change)
 
   def _separate(self, grey: np.ndarray, time_s: float) -> Departure | None:
-    separation, resting = self._separation, self._hardly_moved(grey)
+    separation = self._separation
+    resting = self._hardly_moved(grey, self._background, 1.0)
     separation.add(grey, time_s)
     self.visible = resting and self._contrast
     if not resting and (found := separation.find()):

@@ -9,12 +9,12 @@ import cv2
 import numpy as np
 import pytest
 
-from waggle_tasks import scenario
+from waggle_tasks import appearance, scenario
 from waggle_tasks.agents import receiver, receivers
 from waggle_tasks.experiments import evaluator, rollout
 from waggle_tasks.protocol import frame, gestures, payload, schedule, timing
 from waggle_tasks.protocol.symbols import Symbol
-from waggle_tasks.tasks import drift
+from waggle_tasks.tasks import drift, surroundings
 
 BOOK = gestures.v_codebook(duration_s=2.0)
 PAUSES = timing.Timing(3.2, 0.6, 2.0, 1.2)
@@ -195,18 +195,23 @@ def test_rendered_images_are_read(clip: object, short: dict) -> None:
 
 
 @pytest.mark.parametrize(
-  'sway',
-  [drift.Drift(0.0, 0.002, 0.1), drift.Drift(0.002)],
-  ids=['camera', 'dancer'],
+  'changes',
+  [
+    {'drift': drift.Drift(0.0, 0.002, 0.1)},
+    {'drift': drift.Drift(0.002)},
+    {'appearance': appearance.Appearance('clutter', 'clutter')},
+    {'surroundings': surroundings.Surroundings(bystanders=4)},
+  ],
+  ids=['camera sways', 'dancer sways', 'clutter', 'bystanders'],
 )
-def test_the_first_stroke_is_read_when_somebody_sways(
-  sway: drift.Drift,
+def test_the_first_stroke_is_read_whatever_else_is_seen(
+  changes: dict[str, object],
   load: Callable,
   episode: Callable,
   hover: Callable,
   short: dict,
 ) -> None:
-  environment = load(observers=1, seed=2, duration_s=9.4, drift=sway, **short)
+  environment = load(observers=1, seed=2, duration_s=9.4, **changes, **short)
   reader, events = receivers.make('view_bank', short['codebook']), []
   for timestep in episode(environment, hover):
     (own,) = timestep.observation

@@ -71,8 +71,8 @@ def test_an_absolute_track_has_limits_of_its_own(
     f' {away_px:.1f} px (0.12 widths, at least 2 px)'
   ) in run.words
   assert (
-    f'dashed: motion ends under {0.2 * motion.width_px:.1f} px/s'
-    ' (0.2 widths/s, at least 2.5 px/s)'
+    f'dashed: motion ends under {0.15 * motion.width_px:.1f} px/s'
+    ' (0.15 widths/s, at least 2.5 px/s)'
   ) in run.words
   assert 'share seen of the target' in run.words
   assert 'a null needs 0.2, the track 0.1' in run.words
@@ -106,7 +106,7 @@ def test_changed_numbers_are_those_of_the_page(
   trace = run.rollout.traces['observer_1']
   drawn = signals.draw(trace, 60.0, config)
   assert 'by 7.0 px (0.12 widths, at least 7 px)' in drawn
-  assert 'under 30.0 px/s (0.2 widths/s, at least 30 px/s)' in drawn
+  assert 'under 30.0 px/s (0.15 widths/s, at least 30 px/s)' in drawn
   assert 'the track 0.3' in drawn
   events = [e for e in run.rollout.events['observer_1'] if e.time_s < 10][1:2]
   book = scenario.Scenario().codebook
