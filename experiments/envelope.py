@@ -3,7 +3,6 @@
 import collections
 from collections.abc import Mapping, Sequence
 import dataclasses
-import itertools
 
 from waggle_tasks.experiments import sweep_cases
 
@@ -162,4 +161,9 @@ def _grouped(
   groups = {}
   for row in rows:
     groups.setdefault(tuple(value(row, n) for n in names), []).append(row)
-  return {v: groups[v] for v in itertools.product(*levels) if v in groups}
+  places = [{level: n for n, level in enumerate(each)} for each in levels]
+
+  def place(values: tuple) -> list[int]:
+    return [each[value] for each, value in zip(places, values, strict=True)]
+
+  return {values: groups[values] for values in sorted(groups, key=place)}
