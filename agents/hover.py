@@ -172,6 +172,8 @@ class Hover:
       return False
     if np.abs(target.shift_px).max() > self._config.rest_px:
       return False
+    if self._slack_px:
+      return True  # Where the room moves too, no more can be asked.
     behind = background[box]
     loose = difference.Background(behind.grey, behind.variance)
     loose.loosen(self._config.slack_px)

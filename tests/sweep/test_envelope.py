@@ -269,3 +269,22 @@ def test_pictures_and_page_are_drawn_the_same_twice(
     assert word in svg
   png = (tmp_path / 'a' / 'envelope.png').read_bytes()
   assert png.startswith(b'\x89PNG')
+
+
+def test_many_sweeps_of_one_factor_each_make_one_report(make: object) -> None:
+  # Their product has more than 10^9 combinations.
+  factors = (
+    'distance_m', 'noise_sigma', 'flicker_share', 'exposure_s', 'step_gain',
+    'jitter_m', 'dropped_share', 'repeated_share', 'blackout_share',
+    'performer_drift_m', 'observer_drift_m',
+  )  # fmt: skip
+  levels = '0.01,0.012,0.014,0.016,0.018,0.02'
+  grids = {name: f'{name}={levels}' for name in factors}
+  grids['distance_m'] = 'distance_m=1,1.1,1.2,1.3,1.4,1.5'
+  grids['step_gain'] = 'step_gain=0.5,0.6,0.7,0.8,0.9,1.1'
+  rows = [
+    row for grid in grids.values() for row in make.rows(grid, observers=1)
+  ]
+  maps = envelope.panels(rows)
+  assert sum(len(panel.cells) for panel in maps) == len(rows) == 66
+  assert 'right: 66/66 exposures' in sweep_tables.report(rows, None)
