@@ -108,9 +108,9 @@ class Alignment:
     if not self._useful or (rested and self._as_it_was(image)):
       return image
     grey = difference.grey(image)
-    return self._undo(grey) if self.find(grey) else None
+    return self._undo(grey) if self._find(grey) else None
 
-  def find(self, grey: np.ndarray) -> bool:
+  def _find(self, grey: np.ndarray) -> bool:
     """Finds what happened to an image, (H, W) uint8, of the same scene.
 
     Returns:
