@@ -65,9 +65,10 @@ def grid(texts: Sequence[str]) -> dict[str, list[object]]:
     name, equals, listed = text.partition('=')
     if not equals:
       raise SweepError(f'`grid` must be NAME=VALUE,VALUE,...: got {text!r}')
-    checks.choice('grid', name, [*scenario_fields.defaults()], SweepError)
     if name == 'seed':
       raise SweepError('`grid` must not name seed: every case has its own')
+    others = [field for field in scenario_fields.defaults() if field != 'seed']
+    checks.choice('grid', name, others, SweepError)
     if name in out:
       raise SweepError(f'`grid` must name a field once: got {name} again')
     values = [scenario_fields.parse(name, each) for each in listed.split(',')]

@@ -116,6 +116,15 @@ def test_what_cannot_be_swept_is_refused(
     make.cases(*grid)
 
 
+def test_fields_that_can_be_swept_are_listed_without_the_seed(
+  make: Make,
+) -> None:
+  with pytest.raises(errors.WaggleError) as refused:
+    make.cases('colour=red')
+  assert "'distance_m'" in str(refused.value)
+  assert "'seed'" not in str(refused.value)
+
+
 @pytest.mark.parametrize('repeats', [0, -1, 10**6 + 1])
 def test_a_number_of_repeats_that_makes_no_sense_is_refused(
   make: Make, repeats: int
