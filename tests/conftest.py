@@ -7,8 +7,11 @@ finds it.
 from collections.abc import Callable, Iterator, Sequence
 import dataclasses
 import math
+import os
 import pathlib
 import signal
+import subprocess
+import sys
 import time
 
 import dm_env
@@ -34,6 +37,25 @@ def pytest_configure() -> None:
   that they start in turn.
   """
   signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+@pytest.fixture(scope='session')
+def waggle() -> Callable[..., subprocess.CompletedProcess[str]]:
+  """Runs `waggle` in a new process, as a launcher's flags are global."""
+
+  def run(
+    *arguments: str, cwd: pathlib.Path | None = None, **environment: str
+  ) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+      [sys.executable, '-m', 'waggle_tasks.experiments.main', *arguments],
+      capture_output=True,
+      text=True,
+      check=False,
+      cwd=cwd,
+      env=os.environ | environment,
+    )
+
+  return run
 
 
 @pytest.fixture(scope='session')

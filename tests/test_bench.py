@@ -7,7 +7,6 @@ import json
 import os
 import pathlib
 import subprocess
-import sys
 import time
 
 import numpy as np
@@ -30,18 +29,8 @@ from waggle_tasks.experiments.bench_parts import (
   stages,
 )
 
+Waggle = Callable[..., subprocess.CompletedProcess[str]]
 FRAME_S = 0.04
-
-
-def bench(*arguments: str) -> subprocess.CompletedProcess[str]:
-  """Runs the command in a new process: a launcher's flags are global."""
-  module = 'waggle_tasks.experiments.main'
-  return subprocess.run(
-    [sys.executable, '-m', module, 'bench', *arguments],
-    capture_output=True,
-    text=True,
-    check=False,
-  )
 
 
 # What the parts of the benchmark could have measured.
@@ -348,11 +337,11 @@ def test_unequal_event_logs_are_shown() -> None:
 
 
 def test_the_command_prints_a_report_and_leaves_json(
-  tmp_path: pathlib.Path,
+  waggle: Waggle, tmp_path: pathlib.Path
 ) -> None:
   path = tmp_path / 'bench.json'
   options = ('--only=realtime', '--repeats=1', '--simulated_s=0.08')
-  child = bench(*options, f'--json={path}')
+  child = waggle('bench', *options, f'--json={path}')
   assert child.returncode == 0, child.stderr
   title, clock, _, first, *_ = child.stdout.splitlines()
   found = json.loads(path.read_text(encoding='utf-8'))
@@ -364,7 +353,7 @@ def test_the_command_prints_a_report_and_leaves_json(
   assert found['ratios'] == {
     'simulated time / time on one core': pytest.approx(0.08 / loop['whole_s'])
   }
-  again = bench(*options, f'--json={path}')
+  again = waggle('bench', *options, f'--json={path}')
   assert again.returncode == 2
   assert again.stdout == ''
   assert again.stderr == (
@@ -373,9 +362,11 @@ def test_the_command_prints_a_report_and_leaves_json(
   )
 
 
-def test_the_command_checks_pictures(tmp_path: pathlib.Path) -> None:
+def test_the_command_checks_pictures(
+  waggle: Waggle, tmp_path: pathlib.Path
+) -> None:
   path = tmp_path / 'check.json'
-  child = bench('--check', '--scenes=1', f'--json={path}')
+  child = waggle('bench', '--check', '--scenes=1', f'--json={path}')
   assert child.returncode == 0, child.stderr
   assert 'in 20 pictures:\nthe same, 1 is allowed.' in child.stdout
   pictures = json.loads(path.read_text(encoding='utf-8'))['pictures']

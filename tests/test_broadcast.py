@@ -3,12 +3,12 @@
 Also what it leaves behind, and that the same scenario repeats byte for byte.
 """
 
+from collections.abc import Callable
 import dataclasses
 import itertools
 import json
 import pathlib
 import subprocess
-import sys
 
 import numpy as np
 import pytest
@@ -18,22 +18,9 @@ from waggle_tasks.experiments import evaluator, records
 from waggle_tasks.experiments import rollout as rollout_lib
 from waggle_tasks.protocol import flight
 
+Waggle = Callable[..., subprocess.CompletedProcess[str]]
 OBSERVERS = ('observer_1', 'observer_2', 'observer_3')
 FRAME = 'NULL START NULL 0 NULL 0 NULL 0 NULL 0 NULL 1 NULL 0 NULL END NULL'
-COMMAND = [sys.executable, '-m', 'waggle_tasks.experiments.main', 'broadcast']
-
-
-def waggle(
-  *arguments: str, folder: pathlib.Path
-) -> subprocess.CompletedProcess[str]:
-  """Runs `waggle broadcast` in a new process, in a folder."""
-  return subprocess.run(
-    [*COMMAND, *arguments],
-    capture_output=True,
-    text=True,
-    check=False,
-    cwd=folder,
-  )
 
 
 @dataclasses.dataclass(frozen=True)
@@ -53,10 +40,10 @@ class Run:
 
 
 @pytest.fixture(scope='module')
-def run(tmp_path_factory: pytest.TempPathFactory) -> Run:
+def run(waggle: Waggle, tmp_path_factory: pytest.TempPathFactory) -> Run:
   """The main job, as a newcomer runs it."""
   home = tmp_path_factory.mktemp('home')
-  return Run(waggle(folder=home), home / 'runs' / 'broadcast-1')
+  return Run(waggle('broadcast', cwd=home), home / 'runs' / 'broadcast-1')
 
 
 @pytest.fixture(scope='module')
@@ -210,7 +197,7 @@ SHORT_FLAGS = (
 
 
 def test_flags_make_another_dance_and_its_folder(
-  tmp_path: pathlib.Path, short: dict[str, object]
+  waggle: Waggle, tmp_path: pathlib.Path, short: dict[str, object]
 ) -> None:
   given = (
     *SHORT_FLAGS,
@@ -220,7 +207,7 @@ def test_flags_make_another_dance_and_its_folder(
     '--seed=3',
     '--output=of/mine',
   )
-  child = waggle(*given, folder=tmp_path)
+  child = waggle('broadcast', *given, cwd=tmp_path)
   assert child.returncode == 0, child.stderr
   made = Run(child, tmp_path / 'of' / 'mine')
   assert 'Group passed: 1 of 1 observers decoded 100010.' in child.stdout
@@ -235,9 +222,9 @@ def test_flags_make_another_dance_and_its_folder(
 
 
 def test_a_group_that_fails_exits_with_1_and_is_recorded(
-  tmp_path: pathlib.Path,
+  waggle: Waggle, tmp_path: pathlib.Path
 ) -> None:
-  child = waggle('--duration_s=4', '--output=run', folder=tmp_path)
+  child = waggle('broadcast', '--duration_s=4', '--output=run', cwd=tmp_path)
   assert child.returncode == 1
   assert 'Group FAILED: 0 of 3 observers decoded 000010.' in child.stdout
   made = Run(child, tmp_path / 'run')

@@ -1,7 +1,7 @@
 """`waggle broadcast` and bad input: one clear line, and nothing left behind."""
 
+from collections.abc import Callable
 import json
-import os
 import pathlib
 import signal
 import subprocess
@@ -86,6 +86,7 @@ NOT_FINITE = [
   f'--{name}={value}' for name in NUMBERS for value in ('nan', 'inf')
 ]
 Answer = tuple[int, str, str, list[str]]
+Waggle = Callable[..., subprocess.CompletedProcess[str]]
 
 
 @pytest.fixture(scope='module')
@@ -135,10 +136,9 @@ def test_what_is_not_a_finite_number_is_refused(
 COMMAND = [sys.executable, '-m', 'waggle_tasks.experiments.main', 'broadcast']
 
 
-def test_help_shows_a_flag_for_every_choice() -> None:
-  child = subprocess.run(
-    [*COMMAND, '--help'], capture_output=True, text=True, check=True
-  )
+def test_help_shows_a_flag_for_every_choice(waggle: Waggle) -> None:
+  child = waggle('broadcast', '--help')
+  assert child.returncode == 0, child.stderr
   for name in ('receiver', 'output', *NUMBERS):
     assert f'--{name}=' in child.stdout
   for name in scenario.Scenario.__dataclass_fields__:
@@ -150,17 +150,10 @@ def test_help_shows_a_flag_for_every_choice() -> None:
 
 
 def test_a_machine_that_cannot_render_is_told_so_and_nothing_is_left(
-  tmp_path: pathlib.Path,
+  waggle: Waggle, tmp_path: pathlib.Path
 ) -> None:
   no_gl = {'MUJOCO_GL': 'egl', '__EGL_VENDOR_LIBRARY_FILENAMES': '/no/such'}
-  child = subprocess.run(
-    [*COMMAND, '--output=run'],
-    capture_output=True,
-    text=True,
-    check=False,
-    cwd=tmp_path,
-    env=os.environ | no_gl,
-  )
+  child = waggle('broadcast', '--output=run', cwd=tmp_path, **no_gl)
   assert child.returncode == 2
   (said,) = child.stderr.splitlines()
   assert 'cannot render with MUJOCO_GL=egl' in said

@@ -1,6 +1,7 @@
 """The `waggle` command: its listing, its help, its errors."""
 
 import ast
+from collections.abc import Callable
 import pathlib
 import subprocess
 import sys
@@ -10,18 +11,8 @@ import pytest
 import waggle_tasks
 from waggle_tasks.experiments import main
 
+Waggle = Callable[..., subprocess.CompletedProcess[str]]
 FOLDER = pathlib.Path(main.__file__).parent
-
-
-def waggle(*arguments: str) -> subprocess.CompletedProcess[str]:
-  """Runs the command in a new process: a launcher's flags are global."""
-  module = 'waggle_tasks.experiments.main'
-  return subprocess.run(
-    [sys.executable, '-m', module, *arguments],
-    capture_output=True,
-    text=True,
-    check=False,
-  )
 
 
 @pytest.mark.parametrize('arguments', [[], ['--help'], ['-h']])
@@ -76,7 +67,7 @@ def test_an_unknown_command_lists_close_ones_and_exits_2(
 
 @pytest.mark.parametrize('option', ['--help', '-h'])
 def test_help_of_a_command_shows_its_own_flags_and_no_others(
-  option: str,
+  waggle: Waggle, option: str
 ) -> None:
   child = waggle('doctor', option)
   assert child.returncode == 0
@@ -101,7 +92,7 @@ def test_help_of_a_command_shows_its_own_flags_and_no_others(
   ],
 )
 def test_a_bad_flag_is_one_line_and_exit_status_2(
-  argument: str, line: str
+  waggle: Waggle, argument: str, line: str
 ) -> None:
   child = waggle('doctor', argument)
   assert child.returncode == 2
@@ -110,7 +101,7 @@ def test_a_bad_flag_is_one_line_and_exit_status_2(
   assert said.startswith(f'waggle doctor: {line}')
 
 
-def test_a_launcher_runs_as_a_module_too() -> None:
+def test_a_launcher_runs_as_a_module_too(waggle: Waggle) -> None:
   module = 'waggle_tasks.experiments.doctor'
   child = subprocess.run(
     [sys.executable, '-m', module, '--help'],

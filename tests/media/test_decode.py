@@ -20,17 +20,9 @@ from waggle_tasks.experiments import capture, reader, recordings, records
 from waggle_tasks.experiments import rollout as rollout_lib
 from waggle_tasks.protocol import gestures
 
+Waggle = Callable[..., subprocess.CompletedProcess[str]]
 Part = recordings.Part
 WANTED = ['NULL', 'START', 'NULL', '0', 'NULL']
-
-
-def waggle(
-  *arguments: str, cwd: pathlib.Path | None = None
-) -> subprocess.CompletedProcess[str]:
-  return subprocess.run(
-    [sys.executable, '-m', 'waggle_tasks.experiments.main', *arguments],
-    cwd=cwd, capture_output=True, text=True, check=False,
-  )  # fmt: skip
 
 
 def decoded(
@@ -103,7 +95,7 @@ def test_images_that_others_are_than_those_of_the_message_are_noticed(
 
 
 def test_the_command_replays_a_folder_with_receivers_side_by_side(
-  recorded: object,
+  waggle: Waggle, recorded: object
 ) -> None:
   child = waggle(
     'decode', str(recorded.folder), '--receiver=klt',
@@ -116,7 +108,7 @@ def test_the_command_replays_a_folder_with_receivers_side_by_side(
 
 
 def test_the_command_notices_an_event_log_that_was_changed(
-  copied: pathlib.Path,
+  waggle: Waggle, copied: pathlib.Path
 ) -> None:
   path = copied / 'events.jsonl'
   lines = [json.loads(line) for line in path.read_text().splitlines()]
@@ -214,7 +206,9 @@ def test_times_come_from_the_container_not_from_a_rate(
 
 
 def test_an_annotated_copy_shows_what_was_read(
-  dance: Callable[..., pathlib.Path], tmp_path: pathlib.Path
+  waggle: Waggle,
+  dance: Callable[..., pathlib.Path],
+  tmp_path: pathlib.Path,
 ) -> None:
   path, source = tmp_path / 'seen.webm', dance()
   child = waggle('decode', str(source), f'--annotate={path}')
@@ -261,7 +255,11 @@ def test_replays_of_the_papers_cases_are_the_online_runs(
   ],
 )
 def test_a_filmed_broadcast_still_says_the_same_when_encoded_again(
-  name: str, codec: str, options: dict[str, str], tmp_path: pathlib.Path
+  waggle: Waggle,
+  name: str,
+  codec: str,
+  options: dict[str, str],
+  tmp_path: pathlib.Path,
 ) -> None:
   av = pytest.importorskip('av')
   child = waggle(
@@ -465,6 +463,7 @@ def test_too_long_a_recording_asks_for_a_part(
   ],
 )
 def test_bad_arguments_are_one_line_and_exit_status_2(
+  waggle: Waggle,
   tiny: Callable[..., pathlib.Path],
   arguments: list[str],
   line: str,

@@ -1,8 +1,8 @@
 """The pictures of the documentation, and the small files they are kept in."""
 
+from collections.abc import Callable
 import pathlib
 import subprocess
-import sys
 
 import cv2
 import numpy as np
@@ -10,6 +10,8 @@ import pytest
 
 from waggle_tasks import scenario
 from waggle_tasks.experiments import gallery, palette, png, story, traces
+
+Waggle = Callable[..., subprocess.CompletedProcess[str]]
 
 
 def read(path: pathlib.Path) -> np.ndarray:
@@ -72,21 +74,18 @@ def test_each_gesture_shows_the_performer_all_along_its_track() -> None:
 
 @pytest.mark.slow
 def test_the_command_makes_pictures_small_enough_to_commit(
-  tmp_path: pathlib.Path,
+  waggle: Waggle, tmp_path: pathlib.Path
 ) -> None:
-  subprocess.run(
-    [
-      sys.executable, '-m', 'waggle_tasks.experiments.gallery',
-      f'--output={tmp_path}',
-    ],
-    check=True,
-  )  # fmt: skip
+  done = waggle('gallery', f'--output={tmp_path}')
+  assert done.returncode == 0, done.stderr
   sizes = {path.name: path.stat().st_size for path in tmp_path.iterdir()}
   assert sizes.keys() == {'composite.png', 'gestures.png'}
   assert max(sizes.values()) < 300_000
 
 
-def test_the_envelope_of_a_sweep_is_drawn(tmp_path: pathlib.Path) -> None:
+def test_the_envelope_of_a_sweep_is_drawn(
+  waggle: Waggle, tmp_path: pathlib.Path
+) -> None:
   pytest.importorskip('matplotlib')
   grids = '--grid=distance_m=1.0,1.3', '--grid=bearing_deg=0,20'
   short = '--control=no_send', '--duration_s=0.08', '--observers=1'
@@ -94,12 +93,8 @@ def test_the_envelope_of_a_sweep_is_drawn(tmp_path: pathlib.Path) -> None:
     ['sweep', *grids, *short, '--workers=1', '--output=flown'],
     ['gallery', '--sweep=flown', '--output=pictures'],
   ):
-    subprocess.run(
-      [sys.executable, '-m', 'waggle_tasks.experiments.main', *command],
-      check=True,
-      capture_output=True,
-      cwd=tmp_path,
-    )
+    done = waggle(*command, cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
   picture = read(tmp_path / 'pictures' / 'envelope.png')
   assert min(picture.shape[:2]) > 200
   assert np.ptp(picture) > 200

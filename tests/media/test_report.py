@@ -1,12 +1,12 @@
 """The page of a run, of a suite, and the command that makes them again."""
 
+from collections.abc import Callable
 import html.parser
 import itertools
 import json
 import pathlib
 import re
 import subprocess
-import sys
 from xml.etree import ElementTree
 
 import numpy as np
@@ -21,6 +21,7 @@ from waggle_tasks.experiments.pages import (
   suite_page,
 )
 
+Waggle = Callable[..., subprocess.CompletedProcess[str]]
 DATA = (
   'config.json', 'events.jsonl', 'result.json', 'provenance.json',
   'traces.npz', 'positions.npz',
@@ -51,13 +52,6 @@ class Text(html.parser.HTMLParser):
 
   def __str__(self) -> str:
     return ' '.join(' '.join(self.words).split())
-
-
-def waggle(*arguments: str) -> subprocess.CompletedProcess[str]:
-  return subprocess.run(
-    [sys.executable, '-m', 'waggle_tasks.experiments.main', *arguments],
-    capture_output=True, text=True, check=False,
-  )  # fmt: skip
 
 
 @pytest.fixture(scope='module')
@@ -101,7 +95,7 @@ def test_a_page_needs_nothing_but_files_beside_it(
 
 
 def test_the_command_makes_the_same_page_again(
-  copied: pathlib.Path, page: str
+  waggle: Waggle, copied: pathlib.Path, page: str
 ) -> None:
   (copied / document.NAME).unlink()
   child = waggle('report', str(copied))
@@ -236,7 +230,9 @@ def test_videos_of_several_pages_can_be_chosen(copied: pathlib.Path) -> None:
 
 
 @pytest.mark.parametrize('name', DATA)
-def test_a_missing_file_is_named(copied: pathlib.Path, name: str) -> None:
+def test_a_missing_file_is_named(
+  waggle: Waggle, copied: pathlib.Path, name: str
+) -> None:
   (copied / name).unlink()
   child = waggle('report', str(copied))
   assert child.returncode == 2
@@ -345,7 +341,7 @@ def suite(tmp_path: pathlib.Path) -> pathlib.Path:
 
 
 def test_a_suites_page_shows_what_differs_first_and_links_every_run(
-  suite: pathlib.Path,
+  waggle: Waggle, suite: pathlib.Path
 ) -> None:
   child = waggle('report', str(suite))
   assert child.returncode == 0, child.stderr
@@ -379,7 +375,9 @@ def test_damaged_results_are_refused(tmp_path: pathlib.Path, text: str) -> None:
 
 
 @pytest.mark.parametrize('arguments', [[], ['a', 'b']])
-def test_the_command_takes_one_folder(arguments: list[str]) -> None:
+def test_the_command_takes_one_folder(
+  waggle: Waggle, arguments: list[str]
+) -> None:
   child = waggle('report', *arguments)
   assert child.returncode == 2
   assert 'takes one FOLDER' in child.stderr

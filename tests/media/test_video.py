@@ -2,7 +2,6 @@
 
 from collections.abc import Callable
 import itertools
-import os
 import pathlib
 import subprocess
 import sys
@@ -286,16 +285,12 @@ def test_a_single_page_has_room_for_its_title_and_foot() -> None:
   ],
 )
 def test_a_refused_flag_leaves_nothing(
-  flag: str, line: str, tmp_path: pathlib.Path
+  waggle: Callable[..., subprocess.CompletedProcess[str]],
+  flag: str,
+  line: str,
+  tmp_path: pathlib.Path,
 ) -> None:
-  child = subprocess.run(
-    [
-      sys.executable, '-m', 'waggle_tasks.experiments.broadcast',
-      *flag.split(), '--output=run',
-    ],
-    cwd=tmp_path, capture_output=True, text=True, check=False,
-    env=os.environ | {'MUJOCO_GL': 'egl'},
-  )  # fmt: skip
+  child = waggle('broadcast', *flag.split(), '--output=run', cwd=tmp_path)
   assert child.returncode == 2
   assert line in child.stderr.splitlines()[-1]
   assert not list(tmp_path.iterdir())

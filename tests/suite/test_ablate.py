@@ -1,10 +1,11 @@
 """What the receivers' parts are good for: the table and the command."""
 
+from collections.abc import Callable
 import dataclasses
+import functools
 import pathlib
 import re
 import subprocess
-import sys
 
 import pytest
 
@@ -12,6 +13,7 @@ from waggle_tasks.agents import receivers
 from waggle_tasks.experiments import ablations, evaluator
 from waggle_tasks.protocol import gestures
 
+Waggle = Callable[..., subprocess.CompletedProcess[str]]
 Row = dict[str, object]
 
 
@@ -114,23 +116,18 @@ def test_a_part_that_does_harm_buys_less_than_nothing() -> None:
   assert less[-2:] == ['-1', '-1']
 
 
-def ablate(
-  folder: pathlib.Path, *flags: str
-) -> subprocess.CompletedProcess[str]:
-  return subprocess.run(
-    [
-      sys.executable, '-m', 'waggle_tasks.experiments.ablate',
-      '--suite=controls', '--case=no-send', '--workers=1', *flags,
-    ],
-    capture_output=True, text=True, check=False, cwd=folder,
-  )  # fmt: skip
+@pytest.fixture
+def ablate(waggle: Waggle, tmp_path: pathlib.Path) -> Waggle:
+  """Runs `waggle ablate` on a short control, in a folder of its own."""
+  case = '--suite=controls', '--case=no-send', '--workers=1'
+  return functools.partial(waggle, 'ablate', *case, cwd=tmp_path)
 
 
 def test_an_ablation_is_a_suite_of_its_own_and_is_run_once(
-  tmp_path: pathlib.Path,
+  ablate: Waggle, tmp_path: pathlib.Path
 ) -> None:
   flags = '--variant=view_bank,view_bank-separators', '--output=out'
-  done = ablate(tmp_path, *flags)
+  done = ablate(*flags)
   assert done.returncode == 0, done.stderr
   *_, last = done.stdout.split('\n\n')[0].splitlines()
   assert re.split(r' {2,}', last) == [
@@ -142,7 +139,7 @@ def test_an_ablation_is_a_suite_of_its_own_and_is_run_once(
   assert '"receiver": "view_bank:separators=off"' in text
   seal = home / 'cases' / 'no-send' / 'seal.json'
   written = seal.stat().st_mtime_ns
-  again = ablate(tmp_path, *flags)
+  again = ablate(*flags)
   assert again.stdout == done.stdout
   assert seal.stat().st_mtime_ns == written
 
@@ -154,10 +151,8 @@ def test_an_ablation_is_a_suite_of_its_own_and_is_run_once(
     ('--case=no-snd', "`case` must be .*: got 'no-snd'. Did you mean no-send"),
   ],
 )
-def test_bad_input_is_one_line(
-  tmp_path: pathlib.Path, flag: str, error: str
-) -> None:
-  done = ablate(tmp_path, flag)
+def test_bad_input_is_one_line(ablate: Waggle, flag: str, error: str) -> None:
+  done = ablate(flag)
   assert done.returncode == 2
   assert done.stderr.count('\n') == 1
   assert re.match(f'waggle ablate: {error}', done.stderr)

@@ -1,10 +1,11 @@
 """Which rows change when a choice that the paper leaves open is moved."""
 
+from collections.abc import Callable
 import dataclasses
+import functools
 import pathlib
 import re
 import subprocess
-import sys
 
 import pytest
 
@@ -12,6 +13,7 @@ from waggle_tasks import suites
 from waggle_tasks.agents import receivers
 from waggle_tasks.experiments import variants
 
+Waggle = Callable[..., subprocess.CompletedProcess[str]]
 Row = dict[str, object]
 CASES = suites.find('paper')
 
@@ -88,24 +90,17 @@ def test_the_report_names_the_rows_that_changed() -> None:
   ]  # fmt: skip
 
 
-def sensitivity_of(
-  folder: pathlib.Path, *flags: str
-) -> subprocess.CompletedProcess[str]:
-  module = 'waggle_tasks.experiments.sensitivity'
-  return subprocess.run(
-    [
-      sys.executable, '-m', module, '--suite=controls', '--case=no-send',
-      *flags,
-    ],
-    capture_output=True,
-    text=True,
-    check=False,
-    cwd=folder,
-  )  # fmt: skip
+@pytest.fixture
+def sensitivity(waggle: Waggle, tmp_path: pathlib.Path) -> Waggle:
+  """Runs `waggle sensitivity` on a short control, in a folder of its own."""
+  case = '--suite=controls', '--case=no-send'
+  return functools.partial(waggle, 'sensitivity', *case, cwd=tmp_path)
 
 
-def test_a_variant_is_a_suite_of_its_own(tmp_path: pathlib.Path) -> None:
-  done = sensitivity_of(tmp_path, '--variant=check-loose', '--output=out')
+def test_a_variant_is_a_suite_of_its_own(
+  sensitivity: Waggle, tmp_path: pathlib.Path
+) -> None:
+  done = sensitivity('--variant=check-loose', '--output=out')
   assert done.returncode == 0, done.stderr
   last = done.stdout.splitlines()[-1]
   cells = ['forward_backward_px=2.0', '0/3', '1/1', 'none']
@@ -123,9 +118,9 @@ def test_a_variant_is_a_suite_of_its_own(tmp_path: pathlib.Path) -> None:
   ],
 )
 def test_bad_input_is_one_line(
-  tmp_path: pathlib.Path, flag: str, error: str
+  sensitivity: Waggle, flag: str, error: str
 ) -> None:
-  done = sensitivity_of(tmp_path, '--variant=base', flag)
+  done = sensitivity('--variant=base', flag)
   assert done.returncode == 2
   assert done.stderr.count('\n') == 1
   assert re.match(f'waggle sensitivity: {error}', done.stderr)

@@ -1,6 +1,7 @@
 """`waggle suite` as its user sees it: its tables, its files, its errors."""
 
 from collections.abc import Callable
+import functools
 import json
 import pathlib
 import re
@@ -9,28 +10,17 @@ import sys
 
 import pytest
 
-Suite = Callable[..., subprocess.CompletedProcess[str]]
+Waggle = Callable[..., subprocess.CompletedProcess[str]]
 
 
 @pytest.fixture
-def suite(tmp_path: pathlib.Path) -> Suite:
-  """Runs the launcher in a folder of its own: its flags are global."""
-  module = 'waggle_tasks.experiments.suite'
-
-  def run(*arguments: str) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(
-      [sys.executable, '-m', module, *arguments],
-      capture_output=True,
-      text=True,
-      check=False,
-      cwd=tmp_path,
-    )
-
-  return run
+def suite(waggle: Waggle, tmp_path: pathlib.Path) -> Waggle:
+  """Runs `waggle suite` in a folder of its own."""
+  return functools.partial(waggle, 'suite', cwd=tmp_path)
 
 
 def test_a_control_of_the_paper_is_flown_and_set_beside_it(
-  suite: Suite, tmp_path: pathlib.Path
+  suite: Waggle, tmp_path: pathlib.Path
 ) -> None:
   done = suite('--suite=controls', '--case=no-send', '--output=out/deep')
   assert done.returncode == 0, done.stderr
@@ -64,7 +54,7 @@ def test_a_control_of_the_paper_is_flown_and_set_beside_it(
 
 
 def test_a_suite_of_ones_own_is_a_json_file(
-  suite: Suite, tmp_path: pathlib.Path
+  suite: Waggle, tmp_path: pathlib.Path
 ) -> None:
   rows = [
     {'name': 'still', 'task': 'no_send', 'duration_s': 0.04, 'group': 'quiet'},
@@ -87,7 +77,7 @@ def test_a_suite_of_ones_own_is_a_json_file(
 
 
 def test_two_finished_folders_are_set_side_by_side(
-  suite: Suite, reference: object
+  suite: Waggle, reference: object
 ) -> None:
   folder = str(reference.folder)
   done = suite(f'--compare={folder}', folder)

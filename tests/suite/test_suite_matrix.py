@@ -5,7 +5,6 @@ import json
 import pathlib
 import re
 import subprocess
-import sys
 
 import numpy as np
 import pytest
@@ -26,21 +25,16 @@ Run = Callable[..., dict[str, dict[str, object]]]
 
 
 @pytest.fixture
-def run(tmp_path: pathlib.Path) -> Run:
+def run(
+  waggle: Callable[..., subprocess.CompletedProcess[str]],
+  tmp_path: pathlib.Path,
+) -> Run:
   """Runs `waggle suite`, which must end as published; rows by case."""
 
   def suite(*flags: str) -> dict[str, dict[str, object]]:
-    module = 'waggle_tasks.experiments.main'
-    done = subprocess.run(
-      [
-        sys.executable, '-m', module, 'suite', '--suite=paper',
-        '--output=results', *flags,
-      ],
-      capture_output=True,
-      text=True,
-      check=False,
-      cwd=tmp_path,
-    )  # fmt: skip
+    done = waggle(
+      'suite', '--suite=paper', '--output=results', *flags, cwd=tmp_path
+    )
     assert done.returncode == 0, done.stdout + done.stderr
     assert 'differs' not in done.stdout
     path = tmp_path / 'results' / 'results.jsonl'

@@ -1,6 +1,7 @@
 """`waggle sweep` as its user sees it: its tables, its files, its errors."""
 
 from collections.abc import Callable
+import functools
 import json
 import pathlib
 import re
@@ -12,31 +13,20 @@ import pytest
 
 from waggle_tasks.experiments import figures
 
-Run = Callable[..., subprocess.CompletedProcess[str]]
+Waggle = Callable[..., subprocess.CompletedProcess[str]]
 BRIEF = ('--control=no_send', '--duration_s=0.04', '--observers=1')
 
 
 @pytest.fixture
-def waggle(tmp_path: pathlib.Path) -> Run:
-  """Runs the command in a folder of its own: its flags are global."""
-  module = 'waggle_tasks.experiments.main'
-
-  def run(*arguments: str) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(
-      [sys.executable, '-m', module, *arguments],
-      capture_output=True,
-      text=True,
-      check=False,
-      cwd=tmp_path,
-    )
-
-  return run
+def here(waggle: Waggle, tmp_path: pathlib.Path) -> Waggle:
+  """Runs `waggle` in a folder of its own."""
+  return functools.partial(waggle, cwd=tmp_path)
 
 
 def test_a_grid_is_flown_and_mapped(
-  waggle: Run, tmp_path: pathlib.Path
+  here: Waggle, tmp_path: pathlib.Path
 ) -> None:
-  done = waggle(
+  done = here(
     'sweep', '--grid', 'distance_m=0.8,1.3', '--grid=noise_sigma=0,5',
     '--repeats=2', '--payload=random', '--workers=1', *BRIEF,
   )  # fmt: skip
@@ -57,15 +47,15 @@ def test_a_grid_is_flown_and_mapped(
   assert '--grid=distance_m=0.8,1.3 --grid=noise_sigma=0,5' in origin['command']
   # The page and the rest come back from the data.
   (folder / 'index.html').unlink()
-  again = waggle('report', str(folder))
+  again = here('report', str(folder))
   assert again.returncode == 0, again.stderr
   assert (folder / 'index.html').exists()
 
 
-def test_a_summary_flies_nothing(waggle: Run, told: object) -> None:
+def test_a_summary_flies_nothing(here: Waggle, told: object) -> None:
   folder = shutil.copytree(told.folder, waggle_folder(told))
   before = {p.name: p.read_bytes() for p in folder.iterdir()}
-  done = waggle('sweep', '--summary', str(folder))
+  done = here('sweep', '--summary', str(folder))
   assert done.returncode == 0, done.stderr
   assert 'right: 4/4 exposures' in done.stdout
   after = {p.name: p.read_bytes() for p in folder.iterdir()}
@@ -78,30 +68,30 @@ def waggle_folder(told: object) -> pathlib.Path:
 
 
 def test_several_sweeps_make_one_map_in_a_new_folder(
-  waggle: Run, tmp_path: pathlib.Path, make: object
+  here: Waggle, tmp_path: pathlib.Path, make: object
 ) -> None:
   for name, sigma in (('a', 0.0), ('b', 5.0)):
     rows = make.rows('distance_m=1,2', observers=1, noise_sigma=sigma)
     text = ''.join(f'{json.dumps(row)}\n' for row in rows)
     (tmp_path / name).mkdir()
     (tmp_path / name / 'results.jsonl').write_text(text)
-  done = waggle('sweep', '--summary', 'a', 'b', '--output=both')
+  done = here('sweep', '--summary', 'a', 'b', '--output=both')
   assert done.returncode == 0, done.stderr
   assert done.stdout.startswith(r'distance_m \ noise_sigma')
   assert 'right: 4/4 exposures' in done.stdout
   names = {path.name for path in (tmp_path / 'both').iterdir()}
   assert {'summary.txt', 'index.html'} <= names
-  printed = waggle('sweep', '--summary', 'a', 'b')
+  printed = here('sweep', '--summary', 'a', 'b')
   assert printed.stdout == done.stdout.split('\n4 cases')[0]
   assert [path.name for path in (tmp_path / 'a').iterdir()] == ['results.jsonl']
 
 
 def test_a_wrong_message_is_exit_status_1(
-  waggle: Run, tmp_path: pathlib.Path, make: object
+  here: Waggle, tmp_path: pathlib.Path, make: object
 ) -> None:
   rows = make.rows(observers=1, fate=lambda c, n: {'decoded': '111111'})
   (tmp_path / 'results.jsonl').write_text(json.dumps(rows[0]) + '\n')
-  done = waggle('sweep', '--summary', '.')
+  done = here('sweep', '--summary', '.')
   assert done.returncode == 1, done.stderr
   assert 'wrong messages: 1 in 1 exposures; at most 100.000%' in done.stdout
 
