@@ -10,10 +10,11 @@ from waggle_tasks.agents import config as config_lib
 from waggle_tasks.agents import difference, hover, klt
 from waggle_tasks.agents import ghost as ghost_lib
 
-_SWAYS = 75  # Images in which the camera's fastest sway counts.
+_SWAYS_S = 3.0  # So long the camera's fastest sway counts.
 _REPAIRS = 25  # Images that the background behind the hover is made from.
 # A target that is sought in the whole picture must be this much of itself.
 _MIN_SHARE, _MAX_SHARE = 0.3, 3.0
+_Row = tuple[float, ...]  # A time and numbers.
 
 
 class AbsoluteTracker:
@@ -93,10 +94,10 @@ class Follower:
     self._repairs = 1
     self._centre_px = departure.ghost.anchor_px
     noisy = self._detector.noise > config.speed_noise
-    frames = config.speed_frames * (1 + noisy + (departure.slack_px > 0))
-    self._recent: deque[tuple[float, float, float]] = deque(maxlen=frames)
-    self._shifts: deque[tuple[float, float, float]] = deque(maxlen=frames)
-    self._sways_px_s: deque[float] = deque(maxlen=_SWAYS)
+    self._speed_s = config.speed_s * (1 + noisy + (departure.slack_px > 0))
+    self._recent: deque[_Row] = deque()  # Time, x and y.
+    self._shifts: deque[_Row] = deque()
+    self._sways_px_s: deque[_Row] = deque()  # Time and speed.
     self._seen_s = math.inf
 
   def lost_s(self, time_s: float) -> float:
@@ -129,12 +130,12 @@ class Follower:
       share, centre_px = found
     self._repair(image, gate)
     self._centre_px, self._seen_s = centre_px, time_s
-    self._recent.append((time_s, *centre_px))
-    self._shifts.append((time_s, *self._alignment.shift_px))
+    _keep(self._recent, (time_s, *centre_px), self._speed_s)
+    _keep(self._shifts, (time_s, *self._alignment.shift_px), self._speed_s)
     if self._background.slack is not None:
-      self._sways_px_s.append(_speed(self._shifts))
+      _keep(self._sways_px_s, (time_s, _speed(self._shifts)), _SWAYS_S)
     # Where the whole room moves, a target at rest does too, by parallax.
-    sway_px_s = max(self._sways_px_s, default=0.0)
+    sway_px_s = max((each for _, each in self._sways_px_s), default=0.0)
     speed_px_s = max(_speed(self._recent) - sway_px_s, 0.0)
     support = cv2.countNonZero(weights)
     return klt.Track(
@@ -193,7 +194,14 @@ class Follower:
       self._background.grey[self._home] = np.rint(self._behind / self._repairs)
 
 
-def _speed(recent: deque[tuple[float, float, float]]) -> float:
+def _keep(rows: deque[_Row], row: _Row, duration_s: float) -> None:
+  """Adds a row, and drops those that are older by a duration."""
+  rows.append(row)
+  while row[0] - rows[0][0] > duration_s - 1e-6:
+    rows.popleft()
+
+
+def _speed(recent: deque[_Row]) -> float:
   """Speed of the straight line that fits positions best, per second."""
   if len(recent) < 2:
     return 0.0

@@ -38,7 +38,6 @@ _LIMITS = {
   'levels': (0, 10),
   'min_support': (1, 10_000),
   'redetect_below': (0, 10_000),
-  'coast_frames': (0, 10_000),
 }
 
 
@@ -61,7 +60,7 @@ class Tracking(_Numbers):
     min_quality: Smallest share of surviving features (paper, section 'Visual
       null confirmation': tracking quality at least 0.2).
     redetect_below: Look for new features when fewer are left.
-    coast_frames: Lost frames that a gesture survives.
+    coast_s: How long a gesture may be out of sight.
     max_gap_s: Longest time between two images of one track.
   """
 
@@ -76,8 +75,8 @@ class Tracking(_Numbers):
   min_support: int = 5
   min_quality: float = 0.2
   redetect_below: int = 20
-  coast_frames: int = 5
-  max_gap_s: float = 0.2
+  coast_s: float = 0.2
+  max_gap_s: float = 0.3
 
 
 @dataclasses.dataclass(frozen=True)
@@ -97,12 +96,14 @@ class Differencing:
     slack_px: How far pictures of a camera that sways may be out of place once
       they are aligned...
     rest_px: ...and how far a target may sway before it has ever moved.
-    speed_frames: Over how many images speed is measured; as many more in noise,
-      and when the camera sways.
+    speed_s: Over how long speed is measured; as long again in noise, and when
+      the camera sways.
     speed_noise: Up to this it is none, in grey levels.
     gate_widths: Half the side of the square around the target in which it is
       looked for, in apparent widths...
     gate_px: ...and so many pixels more.
+    middle_px: How far from the middle a target may hover...
+    middle_widths: ...or so many apparent widths.
     lost_share: Smallest share of the hovering target's difference.
     most_share: Largest share of it: a target that comes close grows.
     separate_s: How long a first motion may take to leave its own ghost.
@@ -120,10 +121,12 @@ class Differencing:
   watch_sigmas: float = 8.0
   slack_px: float = 1.0
   rest_px: float = 4.0
-  speed_frames: int = 10
+  speed_s: float = 0.4
   speed_noise: float = 4.0
   gate_widths: float = 0.9
   gate_px: float = 8.0
+  middle_px: float = 24.0
+  middle_widths: float = 1.0
   lost_share: float = 0.1
   most_share: float = 6.0
   separate_s: float = 4.0
@@ -163,7 +166,7 @@ class Excursion:
     off_s: ...once back for this long; shorter than the paper's, as speed is
       measured over several images...
     stay_s: ...or anywhere else for this long.
-    coast_frames: Lost frames that a gesture survives.
+    coast_s: How long a gesture may be out of sight.
     outside_s: How long it may be out of the picture.
   """
 
@@ -174,7 +177,7 @@ class Excursion:
   off_widths_s: float = 0.15
   off_s: float = 0.48
   stay_s: float = 3.0
-  coast_frames: int = 5
+  coast_s: float = 0.5
   outside_s: float = 5.0
 
   def away_px(self, width_px: float) -> float:
@@ -188,15 +191,9 @@ class Excursion:
 
 @dataclasses.dataclass(frozen=True)
 class Views:
-  """Where a codebook may be seen from, and with what camera.
-
-  The camera is agreed: 640 x 480 pixels and a vertical field of view of 60
-  degrees (paper, section 'Scene, sensors, and information boundaries').
+  """Where a codebook may be seen from.
 
   Attributes:
-    focal_px: Its focal length.
-    columns: Width of its picture in pixels...
-    rows: ...and the height.
     max_angle_deg: Largest viewing angle to either side.
     angles: How many, from one side to the other.
     min_distance_m: Nearest view.
@@ -204,9 +201,6 @@ class Views:
     distances: How many, in equal ratios.
   """
 
-  focal_px: float = 240 / math.tan(math.radians(30))
-  columns: int = 640
-  rows: int = 480
   max_angle_deg: float = 85.0
   angles: int = 35
   min_distance_m: float = 0.5
@@ -250,8 +244,10 @@ class Stillness(_Numbers):
     null_quality: Smallest tracking quality.
     max_widths_s: Largest speed in apparent widths of the target a second, where
       they are known and that is more; 0, as in the paper, for pixels alone.
-    max_repeated: Largest share of images that were seen before, of a camera
-      that never repeats one by itself; 1, as in the paper, asks for no life.
+    max_stale_s: How long the images of a camera that shimmers may be stale in
+      the final rest; 0, as in the paper, asks for no life.
+    bridges: Whether a rest goes on after a loss of sight in which, by the
+      agreed clock, no gesture can hide; else, as in the paper, it begins anew.
   """
 
   anchor_px: float = 15.0
@@ -259,7 +255,8 @@ class Stillness(_Numbers):
   hold_s: float = 3.0
   null_quality: float = 0.2
   max_widths_s: float = 0.0
-  max_repeated: float = 1.0
+  max_stale_s: float = 0.0
+  bridges: bool = False
 
   def slow_px_s(self, width_px: float | None) -> float:
     """The largest speed of a target of this apparent width, or of unknown."""
@@ -293,7 +290,7 @@ KLT_BANK = Config(views=Views())
 ABSOLUTE = Config(
   Differencing(),
   Excursion(),
-  stillness=Stillness(max_widths_s=0.15, max_repeated=0.5),
+  stillness=Stillness(max_widths_s=0.15, max_stale_s=0.4, bridges=True),
 )
 VIEW_BANK = dataclasses.replace(ABSOLUTE, views=Views())
 

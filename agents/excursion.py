@@ -8,9 +8,9 @@ import numpy as np
 from waggle_tasks.agents import config as config_lib
 from waggle_tasks.agents import klt, segmenter
 
-_MEAN = np.ones(5)
+_MEAN_S = 0.08  # To either side.
 _STEP = 0.02  # Of the span.
-_LEAD = 25  # Frames before a target is away that belong to its way.
+_LEAD_S = 1.0  # So long before a target is away its way begins.
 
 
 class ExcursionSegmenter:
@@ -40,10 +40,10 @@ class ExcursionSegmenter:
 
   def _begin(self) -> None:
     """Waits for the next gesture."""
-    self._lead: deque[klt.Track] = deque(maxlen=_LEAD)
+    self._lead: deque[klt.Track] = deque()
     self._path: list[klt.Track] = []
     self._away_since_s = self._slow_since_s = self._back_since_s = math.nan
-    self._lost_since_s, self._lost_frames = math.nan, 0
+    self._lost_since_s = math.nan
     self.active = self.returned = False
 
   def step(self, track: klt.Track) -> segmenter.Segment | None:
@@ -54,7 +54,7 @@ class ExcursionSegmenter:
     """
     if not track.valid:
       return self._lose(track)
-    self._lost_since_s, self._lost_frames = math.nan, 0
+    self._lost_since_s = math.nan
     config, now_s = self._config, track.time_s
     away = np.hypot(*(track.centre_px - self._home_px)) > self._radius_px
     if not self.active:
@@ -72,6 +72,8 @@ class ExcursionSegmenter:
 
   def _rest(self, track: klt.Track, away: bool) -> None:
     self._lead.append(track)
+    while track.time_s - self._lead[0].time_s > _LEAD_S - 1e-6:
+      self._lead.popleft()
     self._away_since_s = _since(self._away_since_s, away, track.time_s)
     if config_lib.lasted(self._away_since_s, track.time_s, self._config.on_s):
       self._path, self.active = [*self._lead], True
@@ -79,16 +81,12 @@ class ExcursionSegmenter:
   def _lose(self, track: klt.Track) -> segmenter.Segment | None:
     config, now_s = self._config, track.time_s
     self._lost_since_s = _since(self._lost_since_s, True, now_s)
-    self._lost_frames += 1
     self._slow_since_s = self._back_since_s = math.nan
     self.returned = False
+    where, limit_s = 'not to be seen', config.coast_s
     if track.outside:
-      where = 'out of the picture'
-      lost = config_lib.lasted(self._lost_since_s, now_s, config.outside_s)
-    else:
-      where = 'not to be seen'
-      lost = self._lost_frames > config.coast_frames
-    if not lost:
+      where, limit_s = 'out of the picture', config.outside_s
+    if not config_lib.lasted(self._lost_since_s, now_s, limit_s):
       return None
     if self.active:
       lost_s = now_s - self._lost_since_s
@@ -98,9 +96,12 @@ class ExcursionSegmenter:
 
   def _finish(self, end_s: float, loss: str | None = None) -> segmenter.Segment:
     path = [each for each in self._path if each.time_s <= end_s]
-    path_px = _tidy(np.array([each.centre_px for each in path]))
+    path_px = _tidy(
+      np.array([each.centre_px for each in path]),
+      np.array([each.time_s for each in path]),
+    )
     path_px = np.concatenate([[self._home_px], path_px])
-    begin_s = path[0].time_s
+    begin_s = self._away_since_s
     if loss is None:
       rest = [t.centre_px for t in self._path if t.time_s >= end_s]
       self._home_px = np.mean(rest, axis=0)
@@ -108,14 +109,18 @@ class ExcursionSegmenter:
     return segmenter.Segment(begin_s, end_s, path_px, loss, self._width_px)
 
 
-def _tidy(path_px: np.ndarray) -> np.ndarray:  # (T, 2)
+def _tidy(
+  path_px: np.ndarray,  # (T, 2)
+  times_s: np.ndarray,  # (T,)
+) -> np.ndarray:
   """Takes the noise out of a path, which would add to its length.
 
-  A mean over five frames, and then only points that are apart.
+  A mean over a short time, and then only points that are apart.
   """
-  count = np.convolve(np.ones(len(path_px)), _MEAN, 'same')  # Less at ends.
-  smooth = [np.convolve(each, _MEAN, 'same') / count for each in path_px.T]
-  path_px = np.stack(smooth, axis=1)
+  begin = np.searchsorted(times_s, times_s - _MEAN_S - 1e-6)
+  end = np.searchsorted(times_s, times_s + _MEAN_S + 1e-6)
+  sums = np.concatenate([np.zeros((1, 2)), np.cumsum(path_px, axis=0)])
+  path_px = (sums[end] - sums[begin]) / (end - begin)[:, None]
   step_px = _STEP * np.ptp(path_px, axis=0).max(initial=0.0)
   kept = [path_px[0]]
   for each in path_px[1:]:

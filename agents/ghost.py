@@ -12,8 +12,8 @@ import numpy as np
 
 from waggle_tasks.agents import difference
 
-_LAG = 4  # Frames over which a ghost must not change.
-_MAX_CHANGE = 0.2  # Share of a ghost that may change in them.
+_LAG_S = 0.16  # So long a ghost must not change...
+_MAX_CHANGE = 0.2  # ...but for this share.
 # A target and its ghost differ from the background about equally.
 _MIN_BALANCE = 0.25
 _MIN_SHARE = 0.1  # Of the largest difference; less is a fragment.
@@ -75,11 +75,11 @@ class Separation:
 
   def find(self) -> Ghost | None:
     """The ghost, once the target has left it in the last image."""
-    if len(self.greys) <= _LAG:
+    now_s, grey = self.greys[-1]
+    older = [each for at_s, each in self.greys if now_s - at_s > _LAG_S - 1e-6]
+    if not older:
       return None
-    grey = self.greys[-1][1]
-    known = self._background
-    _, grey_before = self.greys[-1 - _LAG]
+    known, grey_before = self._background, older[-1]
     before = difference.Background(grey_before, known.variance, known.slack)
     weigh, sigmas = self._detector.weights, self._sigmas
     blobs = difference.Blobs(weigh(grey, self._background, sigmas))

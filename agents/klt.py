@@ -5,6 +5,7 @@ a forward-backward and a support check (paper, section 'RGB optical flow';
 OpenCV, module video, calcOpticalFlowPyrLK).
 """
 
+from collections import deque
 import dataclasses
 import math
 
@@ -12,6 +13,11 @@ import cv2
 import numpy as np
 
 from waggle_tasks.agents import config as config_lib
+
+# Speed is measured over at least so long, an image interval of the paper's
+# camera: faster cameras, and recordings that show each image several times,
+# would measure their noise, or nothing and twice as much in turn.
+_SPEED_S = 0.04
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -21,7 +27,7 @@ class Track:
   Attributes:
     time_s: Time of the image.
     centre_px: (2,) x right and y down; the last known one when lost.
-    speed_px_s: Image speed since the last image.
+    speed_px_s: Image speed, over a short time.
     support: Features that survived all checks.
     quality: Their share of those that were followed.
     valid: Whether the support is enough.
@@ -102,6 +108,8 @@ class KltTracker:
     self._last: _Patch | None = None
     self._time_s = -np.inf
     self._points = np.empty((0, 2), np.float32)
+    # Durations and shifts of the last images, of which speed is made.
+    self._recent: deque[tuple[float, np.ndarray]] = deque()
     self._centre_px: np.ndarray | None = None
     self.anchor_px: np.ndarray | None = None
 
@@ -132,13 +140,23 @@ class KltTracker:
       self._centre_px = self._centre_px + shift_px
     else:
       self._points = self._points[:0]
+      self._recent.clear()
     if len(self._points) < config.redetect_below:
       self._replenish(patch)
     self._last, self._time_s = patch, time_s
-    speed_px_s = math.hypot(*shift_px) / elapsed_s if valid else 0.0
+    speed_px_s = self._speed(elapsed_s, shift_px) if valid else 0.0
     return Track(
       time_s, self._centre_px.copy(), speed_px_s, support, quality, valid
     )
+
+  def _speed(self, elapsed_s: float, shift_px: np.ndarray) -> float:
+    """Image speed over the last images, with one more shift, (2,)."""
+    recent = self._recent
+    recent.append((elapsed_s, shift_px))
+    total_s = sum(each_s for each_s, _ in recent)
+    while total_s - recent[0][0] > _SPEED_S - 1e-6:
+      total_s -= recent.popleft()[0]
+    return math.hypot(*sum(shift for _, shift in recent)) / total_s
 
   def _square(self, patch: _Patch, side_px: int) -> _Patch:
     left, top = (int(c - side_px / 2) for c in self._centre_px)

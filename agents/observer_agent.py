@@ -9,7 +9,8 @@ import numpy as np
 
 from waggle_tasks.agents import navigator as navigator_lib
 from waggle_tasks.agents import provenance, receiver, receivers
-from waggle_tasks.protocol import gestures, payload
+from waggle_tasks.protocol import agreement as agreement_lib
+from waggle_tasks.protocol import payload
 
 
 class Deed(enum.StrEnum):
@@ -125,24 +126,22 @@ class Team:
     self,
     count: int,
     receiver_name: str = 'klt',
-    codebook: gestures.Codebook = gestures.v_codebook(),
-    units: payload.Units = payload.Units(),
+    agreement: agreement_lib.Agreement = agreement_lib.Agreement(),
   ) -> None:
     """Makes the agents at the beginning of an episode.
 
     Args:
       count: How many.
       receiver_name: One of `receivers.RECEIVERS`.
-      codebook: The agreed gestures.
-      units: The agreed heading step and distance unit.
+      agreement: What both sides know.
 
     Raises:
       ReceiverError: if the receiver is not known.
     """
     self.agents = tuple(
       ObserverAgent(
-        receivers.make(receiver_name, codebook),
-        navigator_lib.Navigator(units),
+        receivers.make(receiver_name, agreement),
+        navigator_lib.Navigator(agreement.units),
       )
       for _ in range(count)
     )

@@ -7,15 +7,19 @@ import numpy as np
 
 from waggle_tasks.agents import config as config_lib
 from waggle_tasks.agents import (
+  inputs,
   klt,
   liveness,
   recogniser,
   segmenter,
+  sight,
   stillness,
   views,
   watchers,
 )
-from waggle_tasks.protocol import frame, gestures, payload
+from waggle_tasks.protocol import agreement as agreement_lib
+from waggle_tasks.protocol import clock as clock_lib
+from waggle_tasks.protocol import frame, payload
 from waggle_tasks.protocol.symbols import Symbol
 
 
@@ -68,26 +72,30 @@ class StagedReceiver:
 
   def __init__(
     self,
-    codebook: gestures.Codebook,
+    agreement: agreement_lib.Agreement = agreement_lib.Agreement(),
     config: config_lib.Config | None = None,
   ) -> None:
     """Makes a receiver at the beginning of an episode.
 
     Args:
-      codebook: The agreed gestures.
+      agreement: What both sides know.
       config: The receiver's numbers; None for its own.
     """
     config = config or self.DEFAULT
+    clock = agreement.clock if config.framing.clock else None
     self._watcher = watchers.make(config)
-    templates = views.templates(codebook, config.views)
-    self._recogniser = recogniser.Recogniser(
-      codebook, config.recognition, templates
-    )
+    templates = views.templates(agreement, config.views)
+    self._recogniser = recogniser.Recogniser(config.recognition, templates)
+    bridges = config.stillness.bridges and clock is not None
     self._stillness = stillness.StillnessDetector(
-      config.stillness, config.tracking.max_gap_s
+      config.stillness,
+      config.tracking.max_gap_s,
+      clock.blind_s if bridges else 0.0,
     )
-    self._liveness = liveness.Liveness(config.stillness.max_repeated)
-    self._parser = frame.Parser(rules=config.framing)
+    self._liveness = liveness.Liveness(config.stillness.max_stale_s)
+    self._sight = sight.Sight()
+    self._parser = frame.Parser(rules=config.framing, clock=clock)
+    self._images = inputs.Images()
     self._where: tuple[float | None, float | None] = None, None
     self.track: klt.Track | None = None
     self.segment: segmenter.Segment | None = None
@@ -96,33 +104,50 @@ class StagedReceiver:
     """Takes one image, which is all that the receiver ever gets.
 
     Args:
-      image: (H, W, 3) uint8 RGB.
-      time_s: Its time in seconds.
+      image: (H, W, 3) uint8 RGB, of one size in an episode.
+      time_s: Its time in seconds, later than that of the image before.
 
     Returns:
       The events that this image confirms; mostly none.
+
+    Raises:
+      ReceiverError: if the image or its time is of another kind; then nothing
+        has changed.
     """
+    self._images.check(image, time_s)
     watcher = self._watcher
     self.track, self.segment = watcher.step(image, time_s)
+    self._liveness.step(image, time_s)
+    if watcher.gave_up:
+      self._sight.give_up()
+    self._sight.step(self.track)
     events = []
     if self.segment is not None:
-      recognition = self._recogniser.recognise(self.segment)
-      events.append(self._event(time_s, recognition.symbol, recognition))
-    self._liveness.step(image)
+      found = self._recogniser.recognise(self.segment)
+      moment = self._sight.event(self.segment.begin_s, self.segment.end_s)
+      events.append(self._event(time_s, found.symbol, moment, found))
     if self._stillness.step(self.track, watcher.anchor_px, watcher.moving):
-      if self._liveness.lives():
-        events.append(self._event(time_s, Symbol.NULL, None))
+      if self._may_rest(time_s):
+        moment = self._sight.event(self._stillness.since_s, time_s)
+        events.append(self._event(time_s, Symbol.NULL, moment))
       else:
         self._stillness.begin()
     return tuple(events)
+
+  def _may_rest(self, time_s: float) -> bool:
+    """Whether a rest that was seen may be one, for all that can be known."""
+    final = self._parser.state is frame.State.FINAL_NULL
+    return not final or self._liveness.lives(time_s)
 
   def _event(
     self,
     time_s: float,
     symbol: Symbol,
-    recognition: recogniser.Recognition | None,
+    moment: clock_lib.Moment,
+    recognition: recogniser.Recognition | None = None,
   ) -> Event:
-    self._parser, outcome = self._parser.step(symbol)
+    self._parser, outcome = self._parser.step(symbol, moment)
+    self._liveness.event(symbol is Symbol.NULL, not self._parser.begun)
     message = rejection = None
     where = None, None
     if recognition is not None:

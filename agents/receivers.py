@@ -4,7 +4,8 @@ import dataclasses
 
 from waggle_tasks.agents import config as config_lib
 from waggle_tasks.agents import receiver
-from waggle_tasks.protocol import checks, gestures
+from waggle_tasks.protocol import agreement as agreement_lib
+from waggle_tasks.protocol import checks
 
 RECEIVERS = {
   'klt': receiver.KltReceiver,
@@ -18,21 +19,21 @@ ReceiverError = config_lib.ReceiverError
 
 
 def make(
-  name: str, codebook: gestures.Codebook, zoom: float = 1.0
+  name: str,
+  agreement: agreement_lib.Agreement = agreement_lib.Agreement(),
 ) -> receiver.Receiver:
   """Makes a receiver at the beginning of an episode.
 
   Args:
     name: One of `RECEIVERS`, as it is ('klt') or with parts of its
       configuration changed ('klt:corner_quality=0.1,separators=off').
-    codebook: The agreed gestures.
-    zoom: Focal length of the camera over that of an observer's eye.
+    agreement: What both sides know.
 
   Raises:
     ReceiverError: as `configured` does.
   """
   made, config = configured(name)
-  return made(codebook, config_lib.zoomed(config, zoom))
+  return made(agreement, config_lib.zoomed(config, agreement.camera.zoom))
 
 
 def configured(

@@ -45,21 +45,16 @@ class Recogniser:
   """Compares paths with templates of a codebook."""
 
   def __init__(
-    self,
-    codebook: gestures.Codebook,
-    config: config_lib.Recognition,
-    templates: views.Templates | None = None,
+    self, config: config_lib.Recognition, templates: views.Templates
   ) -> None:
     """Makes a recogniser.
 
     Args:
-      codebook: The agreed gestures.
       config: The limits.
-      templates: What to compare with; None for the codebook seen from the
-        front.
+      templates: What to compare with.
     """
     self._config = config
-    self._templates = templates or views.frontal(codebook)
+    self._templates = templates
     self._sightings = views.Sightings(self._templates)
 
   def recognise(self, segment: segmenter.Segment) -> Recognition:

@@ -42,7 +42,7 @@ class Segmenter:
     self._tracks: list[klt.Track] = []
     self._fast_since_s = math.nan
     self._slow_since_s = math.nan
-    self._lost_frames = 0
+    self._lost_since_s = math.nan
     self.active = False
 
   def step(self, track: klt.Track) -> Segment | None:
@@ -54,7 +54,7 @@ class Segmenter:
     self._tracks.append(track)
     if not track.valid:
       return self._lose(track)
-    self._lost_frames = 0
+    self._lost_since_s = math.nan
     if not self.active:
       if track.speed_px_s <= self._motion.on_px_s:
         self._fast_since_s = math.nan
@@ -73,8 +73,11 @@ class Segmenter:
     return None
 
   def _lose(self, track: klt.Track) -> Segment | None:
-    self._lost_frames += 1
-    if self._lost_frames <= self._tracking.coast_frames:
+    if math.isnan(self._lost_since_s):
+      self._lost_since_s = track.time_s
+    if not config_lib.lasted(
+      self._lost_since_s, track.time_s, self._tracking.coast_s
+    ):
       return None
     if self.active:
       return self._finish(track.time_s, track.loss(self._tracking))

@@ -10,26 +10,38 @@ import numpy as np
 from waggle_tasks.agents import config as config_lib
 from waggle_tasks.agents import klt
 
+_IN_SIGHT_S = 0.4  # Seen at rest without a break, after a loss.
+
 
 class StillnessDetector:
-  """Counts how long a target has been at rest; one null per rest."""
+  """Counts how long a target has been at rest; one null per rest.
 
-  def __init__(self, config: config_lib.Stillness, max_gap_s: float) -> None:
+  Attributes:
+    since_s: When the rest began; NaN when there is none.
+  """
+
+  def __init__(
+    self, config: config_lib.Stillness, max_gap_s: float, blind_s: float = 0.0
+  ) -> None:
     """Makes the detector.
 
     Args:
       config: The limits.
-      max_gap_s: A longer time between two images begins the rest anew.
+      max_gap_s: A longer time between two images begins the rest anew...
+      blind_s: ...as does a longer loss of sight; with 0, as in the paper, any
+        loss does.
     """
     self._config = config
-    self._max_gap_s = max_gap_s
-    self._since_s = math.nan
-    self._last_s = -math.inf
+    self._blind_s = blind_s
+    self._max_gap_s = max(max_gap_s, blind_s)
+    self.since_s = math.nan
+    self._in_sight_s = math.nan
+    self._rested_s = -math.inf
     self._confirmed = False
 
   def begin(self) -> None:
     """Begins a rest anew, whatever there was."""
-    self._since_s, self._confirmed = math.nan, False
+    self.since_s, self._confirmed = math.nan, False
 
   def step(
     self, track: klt.Track, anchor_px: np.ndarray | None, moving: bool
@@ -44,25 +56,34 @@ class StillnessDetector:
     Returns:
       Whether this frame confirms a null.
     """
-    gap_s, self._last_s = track.time_s - self._last_s, track.time_s
+    now_s = track.time_s
     if moving:
       self._confirmed = False
-    still = (
-      not moving
-      and track.valid
-      and track.quality >= self._config.null_quality
-      and gap_s <= self._max_gap_s
-      and track.speed_px_s < self._config.slow_px_s(track.width_px)
-      and np.hypot(*(track.centre_px - anchor_px)) <= self._config.anchor_px
-    )
-    if not still:
-      self._since_s = math.nan
+    seen = track.valid and track.quality >= self._config.null_quality
+    if not seen and self._blind_s and not moving:
+      self._in_sight_s = math.nan
+      return False  # Judged when it is seen again.
+    if moving or not seen or not self._still(track, anchor_px):
+      self.since_s = self._in_sight_s = math.nan
       return False
-    if math.isnan(self._since_s):
-      self._since_s = track.time_s
-    if self._confirmed or not config_lib.lasted(
-      self._since_s, track.time_s, self._config.hold_s
+    if now_s - self._rested_s > self._max_gap_s + 1e-6:
+      self.since_s = self._in_sight_s = math.nan
+    self._rested_s = now_s
+    if math.isnan(self.since_s):
+      self.since_s = now_s
+    if math.isnan(self._in_sight_s):
+      self._in_sight_s = now_s
+    if self._confirmed or not (
+      config_lib.lasted(self.since_s, now_s, self._config.hold_s)
+      and config_lib.lasted(self._in_sight_s, now_s, _IN_SIGHT_S)
     ):
       return False
     self._confirmed = True
     return True
+
+  def _still(self, track: klt.Track, anchor_px: np.ndarray) -> bool:
+    config = self._config
+    return bool(
+      track.speed_px_s < config.slow_px_s(track.width_px)
+      and np.hypot(*(track.centre_px - anchor_px)) <= config.anchor_px
+    )

@@ -15,6 +15,8 @@ import math
 import numpy as np
 
 from waggle_tasks.agents import config as config_lib
+from waggle_tasks.protocol import agreement as agreement_lib
+from waggle_tasks.protocol import camera as camera_lib
 from waggle_tasks.protocol import gestures
 from waggle_tasks.protocol.symbols import MOTIONS, Symbol
 
@@ -144,10 +146,12 @@ class Sightings:
 
 
 def templates(
-  codebook: gestures.Codebook, config: config_lib.Views | None
+  agreement: agreement_lib.Agreement, config: config_lib.Views | None
 ) -> Templates:
   """The codebook from many views, or from the front alone without any."""
-  return frontal(codebook) if config is None else bank(codebook, config)
+  if config is None:
+    return frontal(agreement.codebook)
+  return bank(agreement.codebook, config, agreement.camera)
 
 
 @functools.cache
@@ -158,7 +162,11 @@ def frontal(codebook: gestures.Codebook) -> Templates:
 
 
 @functools.cache
-def bank(codebook: gestures.Codebook, config: config_lib.Views) -> Templates:
+def bank(
+  codebook: gestures.Codebook,
+  config: config_lib.Views,
+  camera: camera_lib.Camera,
+) -> Templates:
   """Each gesture seen from all around, by symbol and then by view."""
   views = tuple(
     View(float(angle), float(distance))
@@ -170,7 +178,7 @@ def bank(codebook: gestures.Codebook, config: config_lib.Views) -> Templates:
     )
   )
   paths_px = [
-    [project(codebook[symbol], view, config) for view in views]
+    [project(codebook[symbol], view, camera) for view in views]
     for symbol in MOTIONS
   ]
   return Templates(
@@ -181,14 +189,14 @@ def bank(codebook: gestures.Codebook, config: config_lib.Views) -> Templates:
 
 
 def project(
-  gesture: gestures.Gesture, view: View, config: config_lib.Views
+  gesture: gestures.Gesture, view: View, camera: camera_lib.Camera
 ) -> np.ndarray:
   """The part of a gesture that is in the picture.
 
   Args:
     gesture: The gesture.
     view: Where it is seen from.
-    config: The camera.
+    camera: What it is seen with.
 
   Returns:
     (T, 2) pixels from the picture's middle, x right and y down.
@@ -201,10 +209,10 @@ def project(
   angle_rad = math.radians(view.angle_deg)
   depth_m = view.distance_m - x_m * math.sin(angle_rad)
   path_px = (
-    config.focal_px
+    camera.focal_px
     * np.stack([x_m * math.cos(angle_rad), -z_m], axis=1)
     / np.maximum(depth_m, _NEAR_M)[:, None]
   )
-  half_px = np.array([config.columns, config.rows]) / 2
+  half_px = np.array([camera.columns, camera.rows]) / 2
   seen = (np.abs(path_px) <= half_px).all(axis=1) & (depth_m > _NEAR_M)
   return path_px[seen]

@@ -14,10 +14,12 @@ class Watcher(Protocol):
   Attributes:
     anchor_px: (2,) where the target was first, or None.
     moving: Whether a motion is under way.
+    gave_up: Whether it has just given up the target, to seek one anew.
   """
 
   anchor_px: np.ndarray | None
   moving: bool
+  gave_up: bool
 
   def step(
     self, image: np.ndarray, time_s: float
@@ -28,6 +30,8 @@ class Watcher(Protocol):
 
 class FlowWatcher:
   """The paper's: sums of displacements, cut by speed."""
+
+  gave_up = False  # It stays where it lost the target.
 
   def __init__(
     self, tracking: config_lib.Tracking, motion: config_lib.Motion
@@ -62,6 +66,7 @@ class AbsoluteWatcher:
     self._tracker = absolute.AbsoluteTracker(tracking)
     self._motion = motion
     self._segmenter: excursion.ExcursionSegmenter | None = None
+    self.gave_up = False
 
   @property
   def anchor_px(self) -> np.ndarray | None:
@@ -79,6 +84,7 @@ class AbsoluteWatcher:
   ) -> tuple[klt.Track, segmenter.Segment | None]:
     """See `Watcher`."""
     tracks, ghost = self._tracker.step(image, time_s), self._tracker.ghost
+    self.gave_up = ghost is None and self._segmenter is not None
     if ghost is None:
       self._segmenter = None
       return tracks[-1], None

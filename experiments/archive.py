@@ -14,7 +14,9 @@ from waggle_tasks.agents import observer_agent, receiver, recogniser
 from waggle_tasks.experiments import rollout as rollout_lib
 from waggle_tasks.experiments import story
 from waggle_tasks.experiments import traces as traces_lib
+from waggle_tasks.protocol import agreement as agreement_lib
 from waggle_tasks.protocol import (
+  clock,
   decoys,
   frame,
   gestures,
@@ -61,18 +63,18 @@ class Run:
     return self.config['scenario']
 
   @property
-  def codebook(self) -> gestures.Codebook:
-    """The agreed gestures."""
-    return read_codebook(self.config)
+  def agreement(self) -> agreement_lib.Agreement:
+    """What both sides knew."""
+    return read_agreement(self.config)
 
   @property
   def sent(self) -> tuple[story.Sent, ...]:
     """What the performer flew."""
     scene = self.scenario
     bits = payload.Payload.from_bits(scene['payload'])
-    pauses = timing.Timing(**scene['pauses'])
+    known = self.agreement
     dance = decoys.dance(
-      scene['control'], bits, scene['seed'], self.codebook, pauses
+      scene['control'], bits, scene['seed'], known.codebook, known.pauses
     )
     stops_s = {'no_send': 0.0, 'interrupted': scene['stop_s']}
     stop_s = stops_s.get(scene['control'], math.inf)
@@ -126,18 +128,25 @@ def read_json(path: pathlib.Path) -> dict:
   return value
 
 
-def read_codebook(config: Mapping) -> gestures.Codebook:
-  """The codebook of a run's configuration."""
-  return gestures.Codebook(
+def read_agreement(config: Mapping) -> agreement_lib.Agreement:
+  """What both sides know, by a run's configuration."""
+  scene = config['scenario']
+  codebook = gestures.Codebook(
     tuple(
       gestures.Gesture(
         Symbol(each['symbol']),
         tuple(map(tuple, each['corners_m'])),
         each['duration_s'],
       )
-      for each in config['scenario']['codebook']['gestures']
+      for each in scene['codebook']['gestures']
     )
   )
+  pauses, units = (
+    timing.Timing(**scene['pauses']),
+    payload.Units(**scene['units']),
+  )
+  tolerance = clock.Tolerance(**scene['tolerance'])
+  return agreement_lib.Agreement(codebook, pauses, tolerance, units)
 
 
 def read_events(

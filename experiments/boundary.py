@@ -45,7 +45,7 @@ class _World:
 
   def __init__(self, scene: scenario.Scenario, receiver_name: str) -> None:
     self.team = observer_agent.Team(
-      scene.observers, receiver_name, scene.codebook, scene.units
+      scene.observers, receiver_name, scene.agreement
     )
     self.environment = registry.environment(scene)
     self.timestep: dm_env.TimeStep = self.environment.reset()
@@ -83,7 +83,7 @@ class _Probe:
     self, scene: scenario.Scenario, receiver_name: str, index: int
   ) -> None:
     self.team = observer_agent.Team(
-      scene.observers, receiver_name, scene.codebook, scene.units
+      scene.observers, receiver_name, scene.agreement
     )
     self._index = index
 
@@ -155,7 +155,7 @@ def main(argv: Sequence[str]) -> int:
   """Runs both experiments and returns the exit status."""
   del argv
   scene = scenario_flags.read()
-  receivers.make(_RECEIVER.value, scene.codebook)
+  receivers.make(_RECEIVER.value, scene.agreement)
   other = dataclasses.replace(
     scene, payload=_OTHER.value, jitter_m=0.01, seed=scene.seed + 1
   )

@@ -19,7 +19,7 @@ from absl import flags
 
 from waggle_tasks import errors
 from waggle_tasks.agents import config
-from waggle_tasks.entities import eye, renderer
+from waggle_tasks.entities import eye
 from waggle_tasks.experiments import (
   archive,
   capture,
@@ -28,7 +28,8 @@ from waggle_tasks.experiments import (
   recordings,
 )
 from waggle_tasks.experiments.video import annotated
-from waggle_tasks.protocol import checks, gestures
+from waggle_tasks.protocol import agreement as agreement_lib
+from waggle_tasks.protocol import camera, checks
 
 ARGUMENTS = 'FOLDER|VIDEO'
 
@@ -86,11 +87,11 @@ def _folder(folder: pathlib.Path) -> int:
   if given:
     raise DecodeError(f'`{given[0].name}` is about a video: {folder} is none')
   run = archive.read_json(folder / 'config.json')
-  codebook, own = archive.read_codebook(run), run['receiver']
+  agreement, own = archive.read_agreement(run), run['receiver']
   names = list(dict.fromkeys(_RECEIVER.value or [own]))
   status = 0
   for path in capture.paths(folder):
-    readers = reader.replay(path, names, codebook)
+    readers = reader.replay(path, names, agreement)
     images, last_s = readers[0].chain.images, readers[0].last_s
     print(f'{path.stem}: {images} images to {last_s:.2f} s')
     print(reader.report(readers))
@@ -115,10 +116,9 @@ def _video(path: pathlib.Path) -> int:
   with contextlib.ExitStack() as stack:
     recording = stack.enter_context(recordings.Recording(path))
     focal_px = _focal_px(recording.height)
-    readers = [
-      reader.Reader(name, gestures.v_codebook(), focal_px / _EYE_FOCAL_PX)
-      for name in names
-    ]
+    seen = camera.Camera(recording.width, recording.height, focal_px)
+    known = agreement_lib.Agreement(camera=seen)
+    readers = [reader.Reader(name, known) for name in names]
     film = None
     if _ANNOTATE.value is not None:
       film = annotated.Film(pathlib.Path(_ANNOTATE.value), readers[0])
@@ -171,9 +171,6 @@ def _focal_px(height: int) -> float:
   fovy_deg = eye.FOVY_DEG if _FOVY_DEG.value is None else _FOVY_DEG.value
   checks.number('fovy_deg', fovy_deg, 1.0, 170.0, DecodeError)
   return height / 2 / math.tan(math.radians(fovy_deg) / 2)
-
-
-_EYE_FOCAL_PX = renderer.HEIGHT / 2 / math.tan(math.radians(eye.FOVY_DEG) / 2)
 
 
 if __name__ == '__main__':

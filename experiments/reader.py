@@ -8,7 +8,7 @@ import numpy as np
 
 from waggle_tasks.agents import provenance, receiver, receivers
 from waggle_tasks.experiments import archive, capture, records, table
-from waggle_tasks.protocol import gestures
+from waggle_tasks.protocol import agreement as agreement_lib
 
 
 class Reader:
@@ -24,20 +24,21 @@ class Reader:
   """
 
   def __init__(
-    self, name: str, codebook: gestures.Codebook, zoom: float = 1.0
+    self,
+    name: str,
+    agreement: agreement_lib.Agreement = agreement_lib.Agreement(),
   ) -> None:
     """Makes a reader.
 
     Args:
       name: A receiver as `receivers.make` takes it.
-      codebook: The agreed gestures.
-      zoom: Focal length of the camera over that of an observer's eye.
+      agreement: What both sides know.
 
     Raises:
       ReceiverError: if the receiver is not known.
     """
     self.name = name
-    self.receiver = receivers.make(name, codebook, zoom)
+    self.receiver = receivers.make(name, agreement)
     self.events: list[receiver.Event] = []
     self.chain = provenance.Chain()
     self.last_s = np.nan
@@ -61,14 +62,16 @@ class Reader:
 
 
 def replay(
-  path: pathlib.Path, names: Sequence[str], codebook: gestures.Codebook
+  path: pathlib.Path,
+  names: Sequence[str],
+  agreement: agreement_lib.Agreement,
 ) -> list[Reader]:
   """Shows a capture to receivers.
 
   Args:
     path: The capture.
     names: The receivers.
-    codebook: The agreed gestures.
+    agreement: What both sides know.
 
   Returns:
     One reader for each name.
@@ -77,7 +80,7 @@ def replay(
     CaptureError: if the capture is damaged.
     ReceiverError: if a receiver is not known.
   """
-  readers = [Reader(name, codebook) for name in names]
+  readers = [Reader(name, agreement) for name in names]
   for image, time_s in capture.read(path):
     for reader in readers:
       reader.take(image, time_s)

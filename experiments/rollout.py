@@ -66,9 +66,7 @@ def run(
   Raises:
     WaggleError: if the receiver is not known.
   """
-  team = observer_agent.Team(
-    scene.observers, receiver_name, scene.codebook, scene.units
-  )
+  team = observer_agent.Team(scene.observers, receiver_name, scene.agreement)
   environment = registry.environment(scene)
   try:
     return _run(environment, team, watchers)

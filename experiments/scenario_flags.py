@@ -57,6 +57,8 @@ _HELP = {
   'settle_s': 'Stillness after a gesture, in s.',
   'gap_s': 'Hover gap between gestures, in s.',
   'lead_in_s': 'Stillness before a gesture, in s.',
+  'clock_rate': 'By what share the paces of two clocks may differ.',
+  'clock_delay_s': 'How much later one motion may be seen than another, in s.',
   'half_width_m': 'Half width, and height, of a V, in m.',
   'start_height_m': 'How far START climbs, in m.',
   'gesture_s': 'Time that a gesture takes, in s.',

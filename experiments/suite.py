@@ -25,7 +25,7 @@ from waggle_tasks.experiments import (
   suite_tables,
 )
 from waggle_tasks.experiments.pages import suite_page
-from waggle_tasks.protocol import checks, gestures
+from waggle_tasks.protocol import checks
 
 ARGUMENTS = '[B]'
 
@@ -62,7 +62,7 @@ def main(argv: Sequence[str]) -> int:
   if argv[1:]:
     raise flags.Error(f'takes only flags, --name=value: got {argv[1]!r}.')
   cases = _cases()
-  receivers.make(_RECEIVER.value, gestures.v_codebook())
+  receivers.make(_RECEIVER.value)
   workers = launch.worker_count(_WORKERS)
   stem = pathlib.Path(_SUITE.value).stem
   name = '-'.join([stem, _RECEIVER.value, *_CASE.value])

@@ -68,7 +68,7 @@ def main(argv: Sequence[str]) -> int:
     raise flags.Error(f'takes only flags, --name=value: got {argv[1]!r}.')
   grid = sweep_cases.grid(_GRID.value)
   cases = sweep_cases.cases(grid, scenario_flags.values(), _REPEATS.value)
-  receivers.make(_RECEIVER.value, cases[0].scene.codebook)
+  receivers.make(_RECEIVER.value, cases[0].scene.agreement)
   workers = launch.worker_count(_WORKERS)
   engine = functools.partial(pool.run, workers=workers)
   if _SCHEDULER.value is not None:

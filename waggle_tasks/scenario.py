@@ -8,7 +8,8 @@ from waggle_tasks import errors
 from waggle_tasks import sensor as sensor_lib
 from waggle_tasks.arenas import flight_room, layouts
 from waggle_tasks.entities import eye, observer
-from waggle_tasks.protocol import checks, decoys, gestures, timing
+from waggle_tasks.protocol import agreement as agreement_lib
+from waggle_tasks.protocol import checks, clock, decoys, gestures, timing
 from waggle_tasks.protocol import payload as payload_lib
 from waggle_tasks.protocol import schedule as schedule_lib
 from waggle_tasks.tasks import drift as drift_lib
@@ -26,6 +27,7 @@ MAX_OBSERVERS = 64
 PARTS = {
   'codebook': gestures.v_codebook,
   'pauses': timing.Timing,
+  'tolerance': clock.Tolerance,
   'units': payload_lib.Units,
   'appearance': appearance_lib.Appearance,
   'surroundings': surroundings_lib.Surroundings,
@@ -61,6 +63,7 @@ class Scenario:
       sending, 60 s when interrupted, else 12 s after the dance.
     codebook: The agreed gestures.
     pauses: The agreed pauses.
+    tolerance: How far from its time a motion may be seen.
     units: The agreed heading step and distance unit.
     appearance: How the room looks.
     surroundings: What else moves in it.
@@ -85,6 +88,7 @@ class Scenario:
   duration_s: float | None = None
   codebook: gestures.Codebook = gestures.v_codebook()
   pauses: timing.Timing = timing.Timing()
+  tolerance: clock.Tolerance = clock.Tolerance()
   units: payload_lib.Units = payload_lib.Units()
   appearance: appearance_lib.Appearance = appearance_lib.Appearance()
   surroundings: surroundings_lib.Surroundings = surroundings_lib.Surroundings()
@@ -135,6 +139,13 @@ class Scenario:
   def message(self) -> payload_lib.Payload:
     """The payload."""
     return payload_lib.Payload.from_bits(self.payload)
+
+  @property
+  def agreement(self) -> agreement_lib.Agreement:
+    """What both sides know."""
+    return agreement_lib.Agreement(
+      self.codebook, self.pauses, self.tolerance, self.units
+    )
 
   @property
   def schedule(self) -> schedule_lib.Schedule:

@@ -20,7 +20,7 @@ class Audience:
     self._clock = clock
     self._readers = {
       name: [
-        receivers.make(name, scene.codebook) for _ in range(scene.observers)
+        receivers.make(name, scene.agreement) for _ in range(scene.observers)
       ]
       for name in receivers.RECEIVERS
     }

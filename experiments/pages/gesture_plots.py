@@ -9,6 +9,7 @@ from waggle_tasks.agents import receiver, views
 from waggle_tasks.experiments import palette
 from waggle_tasks.experiments import traces as traces_lib
 from waggle_tasks.experiments.pages import markup, plot
+from waggle_tasks.protocol import agreement as agreement_lib
 from waggle_tasks.protocol import gestures
 from waggle_tasks.protocol.symbols import MOTIONS, Symbol
 
@@ -19,7 +20,7 @@ _EDGE = (30.0, 8.0)  # Around the plot: left and below, right and above.
 def draw(
   events: Sequence[receiver.Event],
   trace: traces_lib.Trace | None,
-  codebook: gestures.Codebook,
+  agreement: agreement_lib.Agreement,
   config: config_lib.Config,
 ) -> markup.Markup:
   """One figure for each motion.
@@ -27,11 +28,11 @@ def draw(
   Args:
     events: The motions that one observer recognised, or did not.
     trace: What it saw, when that was kept.
-    codebook: The agreed gestures.
+    agreement: What both sides knew.
     config: What it was compared with, and what scores are held against.
   """
   motions = {m.confirmed_s: m for m in trace.motions} if trace else {}
-  templates = views.templates(codebook, config.views)
+  templates = views.templates(agreement, config.views)
   figures = [
     _figure(number, event, motions.get(event.time_s), templates, config)
     for number, event in enumerate(events, 1)

@@ -230,7 +230,7 @@ def _observer(
     _outcome(outcome),
     plots,
     tag('h3', f'Motions of {name}'),
-    gesture_plots.draw(events, trace, run.codebook, config)
+    gesture_plots.draw(events, trace, run.agreement, config)
     if events
     else tag('p', 'It saw no motion.', class_='faint'),
     id=name,

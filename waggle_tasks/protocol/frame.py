@@ -5,6 +5,7 @@ import enum
 
 from waggle_tasks import errors
 from waggle_tasks.protocol import checks
+from waggle_tasks.protocol import clock as clock_lib
 from waggle_tasks.protocol import payload as payload_lib
 from waggle_tasks.protocol.symbols import BITS, Symbol
 
@@ -58,7 +59,7 @@ class Rejection:
 
 @dataclasses.dataclass(frozen=True)
 class Rules:
-  """Which nulls a frame must have; all of them, in the paper.
+  """Which nulls a frame must have, and whether it has a time.
 
   The null before START and the order of the motions are always demanded.
 
@@ -67,10 +68,13 @@ class Rules:
       there are passed over, however many.
     final_null: Whether a message is complete with the null after END; else it
       is with END.
+    clock: Whether every event must come when the agreed clock lets it, with
+      the target in sight; else, as in the paper, order is all that counts.
   """
 
   separators: bool = True
   final_null: bool = True
+  clock: bool = True
 
   def __post_init__(self) -> None:
     for field in dataclasses.fields(self):
@@ -82,28 +86,95 @@ class Parser:
   """A frame parser as a value: `step` returns the next one and an outcome.
 
   By the paper's rules a message is accepted if and only if the last 17 events
-  are a whole frame (section 'Motion alphabet and message framing').
+  are a whole frame (section 'Motion alphabet and message framing'). With a
+  clock each of them must also have come in its time, and nothing may have been
+  hidden meanwhile.
 
   Attributes:
     state: What it waits for.
     bits: The bits read since START.
     rules: Which nulls it demands.
+    clock: When motions come; None for a parser that knows order alone.
+    moments: With a clock, when the motions since START were.
   """
 
   state: State = State.LEAD_NULL
   bits: str = ''
   rules: Rules = Rules()
+  clock: clock_lib.Clock | None = None
+  moments: tuple[clock_lib.Moment, ...] = ()
 
-  def step(self, symbol: Symbol) -> tuple['Parser', Message | Rejection | None]:
+  @property
+  def begun(self) -> bool:
+    """Whether a frame is under way: START was seen, and its end was not."""
+    return self.state not in (State.LEAD_NULL, State.START)
+
+  def step(
+    self, symbol: Symbol, moment: clock_lib.Moment | None = None
+  ) -> tuple['Parser', Message | Rejection | None]:
     """Takes one event.
 
     Args:
       symbol: Any symbol, UNKNOWN included.
+      moment: When it was; only a parser with a clock needs it.
 
     Returns:
       The next parser, and a Message when the event completes a frame, a
       Rejection when it breaks one, or None.
     """
+    if self.clock is not None:
+      return self._timed(symbol, moment)
+    return self._ordered(symbol)
+
+  def _timed(
+    self, symbol: Symbol, moment: clock_lib.Moment
+  ) -> tuple['Parser', Message | Rejection | None]:
+    """Takes an event by its order, if it also came in its time."""
+    after, outcome = self._ordered(symbol)
+    if isinstance(outcome, Rejection):
+      if self.moments and (unseen := self.clock.unseen(moment)):
+        outcome = Rejection(f'{outcome.reason}; {unseen}')
+      if symbol is Symbol.START and self.clock.motion(symbol, moment):
+        after = self._at(State.LEAD_NULL)  # It was none, so begins no frame.
+      return after._since(symbol, moment), outcome
+    if reason := self._untimely(symbol, moment):
+      null = symbol is Symbol.NULL
+      broken = self._at(State.START if null else State.LEAD_NULL)
+      broken = dataclasses.replace(broken, moments=())
+      return broken, Rejection(f'{reason}, {self._progress}')
+    return after._since(symbol, moment, self.moments), outcome
+
+  def _since(
+    self,
+    symbol: Symbol,
+    moment: clock_lib.Moment,
+    before: tuple[clock_lib.Moment, ...] = (),
+  ) -> 'Parser':
+    """With the moments of all motions since START, of which this may be one."""
+    if not self.begun:
+      return dataclasses.replace(self, moments=())
+    null = symbol is Symbol.NULL
+    moments = before if null else (*before, moment)
+    return dataclasses.replace(self, moments=moments)
+
+  def _untimely(self, symbol: Symbol, moment: clock_lib.Moment) -> str:
+    """Why an event that is in its order is out of its time, or empty."""
+    null = symbol is Symbol.NULL
+    if not self.moments:  # Nothing before START belongs to the frame.
+      return '' if null else self.clock.motion(symbol, moment)
+    if reason := self.clock.unseen(moment):
+      return reason
+    if not null:
+      before = (Symbol.START, *map(Symbol, self.bits))
+      return self.clock.motion(symbol, moment, before, self.moments)
+    if self.state is State.FINAL_NULL:
+      return self.clock.final_null(self.moments[-1], moment)
+    return ''
+
+  def _ordered(
+    self, symbol: Symbol
+  ) -> tuple['Parser', Message | Rejection | None]:
+    """Takes an event by its order alone."""
     null = symbol is Symbol.NULL
     match self.state:
       case State.LEAD_NULL if null:
@@ -127,7 +198,7 @@ class Parser:
     return self._restart(symbol), Rejection(self._reason(symbol))
 
   def _at(self, state: State, bits: str = '') -> 'Parser':
-    return Parser(state, bits, self.rules)
+    return dataclasses.replace(self, state=state, bits=bits)
 
   def _after_motion(self, bits: str) -> 'Parser':
     """What comes after START or a bit."""
@@ -163,7 +234,8 @@ class Parser:
       State.END: 'END',
       State.FINAL_NULL: 'the final null',
     }[self.state]
-    return (
-      f'expected {expected}, got {symbol}, after'
-      f' {len(self.bits)} of {payload_lib.NUM_BITS} bits'
-    )
+    return f'expected {expected}, got {symbol}, {self._progress}'
+
+  @property
+  def _progress(self) -> str:
+    return f'after {len(self.bits)} of {payload_lib.NUM_BITS} bits'
