@@ -14,6 +14,7 @@ _SWAYS_S = 3.0  # So long the camera's fastest sway counts.
 _REPAIRS = 25  # Images that the background behind the hover is made from.
 # A target that is sought in the whole picture must be this much of itself.
 _MIN_SHARE, _MAX_SHARE = 0.3, 3.0
+_PART_SHARE = 0.05  # Less of a target is no other one.
 _Row = tuple[float, ...]  # A time and numbers.
 
 
@@ -83,6 +84,7 @@ class Follower:
     self._config = config
     self._alignment = departure.alignment
     self._detector = departure.detector
+    self._speckled = departure.speckled
     self._background = departure.background
     self._ghost = departure.ghost
     left, top, right, bottom = departure.ghost.box
@@ -106,6 +108,8 @@ class Follower:
 
   def step(self, image: np.ndarray, time_s: float) -> klt.Track:
     """Takes an image, (H, W, 3) uint8 RGB."""
+    if self._speckled:
+      image = difference.despeckled(image)
     aligned = self._alignment.step(image)
     if aligned is None:
       return self._lose(time_s, 0.0, False)
@@ -118,6 +122,7 @@ class Follower:
     self._size = image.shape[1], image.shape[0]
     gate, config = self._gate(), self._config
     weights = self._weights(image, gate, config.box_sigmas)
+    weights = self._mine(weights, gate)
     total, centre_px = difference.centroid(
       weights, (gate[1].start, gate[0].start)
     )
@@ -164,16 +169,32 @@ class Follower:
     return bool(inside_px.min() < reach_px)
 
   def _weights(
-    self, image: np.ndarray, box: tuple[slice, slice], sigmas: float
+    self,
+    image: np.ndarray,
+    box: tuple[slice, slice],
+    sigmas: float,
+    wide: bool = False,
   ) -> np.ndarray:
     return self._detector.weights(
-      difference.grey(image, box), self._background[box], sigmas
+      difference.grey(image, box), self._background[box], sigmas, wide=wide
     )
+
+  def _mine(self, weights: np.ndarray, gate: tuple[slice, slice]) -> np.ndarray:
+    """Weights of the target without those of another that comes near it."""
+    edges = weights[0], weights[-1], weights[:, 0], weights[:, -1]
+    if not any(edge.any() for edge in edges):
+      return weights  # The target alone is well inside.
+    blobs = difference.Blobs(weights)
+    (large,) = np.nonzero(blobs.totals > _PART_SHARE * self._ghost.total)
+    if len(large) < 2:
+      return weights
+    place_px = self._centre_px - (gate[1].start, gate[0].start)
+    return blobs.only(blobs.about(large, place_px))
 
   def _search(self, image: np.ndarray) -> tuple[float, np.ndarray] | None:
     """Finds the target anywhere: its share and centre, if there is just one."""
     whole = slice(0, self._size[1]), slice(0, self._size[0])
-    weights = self._weights(image, whole, self._config.watch_sigmas)
+    weights = self._weights(image, whole, self._config.watch_sigmas, wide=True)
     blobs = difference.Blobs(weights)
     shares = blobs.totals / self._ghost.total
     (picked,) = np.nonzero((shares > _MIN_SHARE) & (shares < _MAX_SHARE))

@@ -244,6 +244,8 @@ class Stillness(_Numbers):
     null_quality: Smallest tracking quality.
     max_widths_s: Largest speed in apparent widths of the target a second, where
       they are known and that is more; 0, as in the paper, for pixels alone.
+    jump_widths: How far, in apparent widths, a picture may jump within a rest;
+      0, as in the paper, for not at all.
     max_stale_s: How long the images of a camera that shimmers may be stale in
       the final rest; 0, as in the paper, asks for no life.
     bridges: Whether a rest goes on after a loss of sight in which, by the
@@ -255,12 +257,17 @@ class Stillness(_Numbers):
   hold_s: float = 3.0
   null_quality: float = 0.2
   max_widths_s: float = 0.0
+  jump_widths: float = 0.0
   max_stale_s: float = 0.0
   bridges: bool = False
 
   def slow_px_s(self, width_px: float | None) -> float:
     """The largest speed of a target of this apparent width, or of unknown."""
     return max(self.max_px_s, self.max_widths_s * (width_px or 0.0))
+
+  def jump_px(self, width_px: float | None) -> float:
+    """How far a target of this apparent width, or of unknown, may jump."""
+    return self.jump_widths * (width_px or 0.0)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -290,7 +297,9 @@ KLT_BANK = Config(views=Views())
 ABSOLUTE = Config(
   Differencing(),
   Excursion(),
-  stillness=Stillness(max_widths_s=0.15, max_stale_s=0.4, bridges=True),
+  stillness=Stillness(
+    max_widths_s=0.15, jump_widths=0.1, max_stale_s=0.4, bridges=True
+  ),
 )
 VIEW_BANK = dataclasses.replace(ABSOLUTE, views=Views())
 

@@ -9,10 +9,13 @@ import cv2
 import numpy as np
 
 from waggle_tasks.agents import config as config_lib
+from waggle_tasks.agents import light
 from waggle_tasks.agents import noise as noise_lib
 
 _SOFT_PX = 5  # Side over which a soft picture is averaged.
 _MERGE_PX = 7  # Differences as near as this belong together.
+_PART = 0.3  # Of its width: parts of a thing are not farther apart.
+_NEIGHBOURS = 3  # Pixels of a square of 3 x 3 that differ, of a thing.
 Box = tuple[slice, slice]
 WHOLE: Box = slice(None), slice(None)
 
@@ -34,6 +37,11 @@ def slopes(grey: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     cv2.Sobel(grey, cv2.CV_32F, *axis, ksize=3, scale=1 / 8)
     for axis in ((1, 0), (0, 1))
   )
+
+
+def despeckled(image: np.ndarray) -> np.ndarray:
+  """An image in grey, (H, W) uint8, without pixels that are bad alone."""
+  return cv2.medianBlur(grey(image), 3)
 
 
 class Background:
@@ -75,16 +83,25 @@ class Detector:
   """Weighs pixels by how surely they differ from a background."""
 
   def __init__(
-    self, config: config_lib.Differencing, noise: noise_lib.Noise
+    self,
+    config: config_lib.Differencing,
+    noise: noise_lib.Noise,
+    excess: float = 1.0,
+    levels: int = 0,
   ) -> None:
     """Makes a detector.
 
     Args:
       config: Its numbers.
       noise: That of the images.
+      excess: How much more noise gathers in places than it would if pixels
+        were independent.
+      levels: How much pixels change by themselves where there is no noise.
     """
     self._config = config
     self._noise = noise
+    self._excess = max(excess, 1.0)
+    self._levels = max(config.min_levels, levels)
     self.noise = noise.overall
     self.noisy = noise.overall > config.noise_levels
     # How much wider than a target its weights are.
@@ -94,12 +111,30 @@ class Detector:
     """What is behind a target, of a picture (H, W) uint8 without noise."""
     return Background(grey, self._noise.variance(grey) if self.noisy else None)
 
+  def factor(self, sigmas: float, spread: float) -> float:
+    """How much energy a box must have to differ, in that of noise.
+
+    Args:
+      sigmas: How far above noise, for independent pixels.
+      spread: Variance of the difference, in that of the noise.
+    """
+    # Noise energy in a box has a standard deviation of sqrt(2) / side.
+    usual = 1 + sigmas * 2**0.5 / self._config.box_px
+    return self._excess * spread * usual
+
+  def strength(self, grey: np.ndarray, background: Background) -> np.ndarray:
+    """How strongly pixels (h, w) differ: energy in that of noise, or levels."""
+    if not self.noisy:
+      return self._change(grey, background, 0, wide=True)
+    return self._energy(grey, background, wide=True) / background.variance
+
   def weights(
     self,
     grey: np.ndarray,  # (h, w) uint8
     background: Background,  # (h, w)
     sigmas: float,
     spread: float = 1.0,
+    wide: bool = False,
   ) -> np.ndarray:
     """Weights (h, w), uint8 or float32, 0 where there is no difference.
 
@@ -108,26 +143,49 @@ class Detector:
       background: What is behind it.
       sigmas: How far above noise a difference must be.
       spread: Variance of the difference, in that of the noise.
+      wide: Whether a target covers little of the part.
     """
-    config = self._config
     if not self.noisy:
-      change = cv2.absdiff(grey, background.grey)
-      if background.slack is not None:
-        change = cv2.subtract(change, background.slack)
-      return cv2.subtract(change, config.min_levels)
-    change = cv2.subtract(grey, background.grey, dtype=cv2.CV_32F)
+      return self._change(grey, background, self._levels, wide)
+    floor = cv2.multiply(background.variance, self.factor(sigmas, spread))
+    energy = self._energy(grey, background, wide)
+    return cv2.max(cv2.subtract(energy, floor), 0.0)
+
+  def _change(
+    self, grey: np.ndarray, background: Background, levels: int, wide: bool
+  ) -> np.ndarray:
+    """By how many levels (h, w) uint8 pixels differ more than by some."""
+    behind, unexplained = light.lit(background.grey, grey, self.noise, wide)
+    change = cv2.absdiff(grey, behind)
     if background.slack is not None:
-      slack = background.slack.astype(np.float32)
-      change = cv2.max(cv2.subtract(cv2.absdiff(change, 0.0), slack), 0.0)
-    side = config.box_px
-    energy = cv2.boxFilter(
+      change = cv2.subtract(change, background.slack)
+    return gathered(cv2.subtract(change, levels + unexplained))
+
+  def _energy(
+    self, grey: np.ndarray, background: Background, wide: bool
+  ) -> np.ndarray:
+    """Mean square (h, w) float32 of differences about each pixel."""
+    behind, unexplained = light.lit(background.grey, grey, self.noise, wide)
+    change = cv2.subtract(grey, behind, dtype=cv2.CV_32F)
+    loose = background.slack
+    if loose is not None or unexplained:
+      loose = unexplained + (0.0 if loose is None else loose.astype(np.float32))
+      change = cv2.max(cv2.absdiff(change, 0.0) - loose, 0.0)
+    side = self._config.box_px
+    return cv2.boxFilter(
       cv2.multiply(change, change), -1, (side, side),
       borderType=cv2.BORDER_REFLECT,
     )  # fmt: skip
-    # Noise energy in a box has a standard deviation of sqrt(2) / side.
-    factor = spread * (1 + sigmas * 2**0.5 / side)
-    floor = cv2.multiply(background.variance, factor)
-    return cv2.max(cv2.subtract(energy, floor), 0.0)
+
+
+def gathered(weights: np.ndarray) -> np.ndarray:
+  """Weights (h, w) uint8 without those of single pixels, which are bad."""
+  if not cv2.countNonZero(weights):
+    return weights
+  _, present = cv2.threshold(weights, 0, 1, cv2.THRESH_BINARY)
+  count = cv2.boxFilter(present, -1, (3, 3), normalize=False)
+  mask = cv2.compare(count, _NEIGHBOURS, cv2.CMP_GE)
+  return cv2.bitwise_and(weights, weights, mask=mask)
 
 
 def centroid(
@@ -148,6 +206,7 @@ class Blobs:
   Attributes:
     totals: (N,) the sum of each one's weights; the first, of what is none, is
       zero.
+    boxes: (N, 4) left, top, right and bottom of each.
   """
 
   def __init__(self, weights: np.ndarray) -> None:
@@ -159,7 +218,12 @@ class Blobs:
     self._weights = weights
     near = np.ones((_MERGE_PX, _MERGE_PX), np.uint8)
     spread = cv2.dilate((weights > 0).astype(np.uint8), near)
-    self._count, self._labels = cv2.connectedComponents(spread)
+    self._count, self._labels, stats, _ = cv2.connectedComponentsWithStats(
+      spread
+    )
+    margin = _MERGE_PX // 2 * np.array([1, 1, -1, -1])
+    corners = stats[:, :2], stats[:, :2] + stats[:, 2:4]
+    self.boxes = np.concatenate(corners, axis=1) + margin
     self.totals = self.sums(weights)
 
   def sums(self, weights: np.ndarray) -> np.ndarray:
@@ -171,6 +235,29 @@ class Blobs:
     here = np.zeros(self._count, bool)
     here[np.unique(self._labels[box])] = True
     return here
+
+  def about(self, picked: np.ndarray, place_px: np.ndarray) -> np.ndarray:
+    """Which of some blobs, given their numbers, are the one thing at a place.
+
+    A thing may be seen in parts, which are nearer to each other than a part of
+    its width; two things are not.
+
+    Args:
+      picked: (M,) numbers, at least one.
+      place_px: (2,) x and y.
+    """
+    boxes = self.boxes[picked]
+    gaps_px = np.maximum(boxes[:, :2] - place_px, place_px - boxes[:, 2:])
+    nearest = int(np.hypot(*np.maximum(gaps_px, 0).T).argmin())
+    mine, box = np.zeros(len(picked), bool), boxes[nearest]
+    near = np.arange(len(picked)) == nearest
+    while (near & ~mine).any():
+      mine |= near
+      parts = boxes[mine]
+      box = np.append(parts[:, :2].min(axis=0), parts[:, 2:].max(axis=0))
+      gaps_px = np.maximum(boxes[:, :2] - box[2:], box[:2] - boxes[:, 2:])
+      near = np.maximum(gaps_px, 0).max(axis=1) <= _PART * (box[2] - box[0])
+    return picked[mine]
 
   def only(self, picked: np.ndarray) -> np.ndarray:
     """Weights (H, W) of some of them, given their numbers."""

@@ -7,9 +7,11 @@ rest, how large it is, and what is behind it.
 """
 
 import dataclasses
+import math
 
 import numpy as np
 
+from waggle_tasks.agents import config as config_lib
 from waggle_tasks.agents import difference
 
 _LAG_S = 0.16  # So long a ghost must not change...
@@ -49,7 +51,7 @@ class Separation:
     self,
     detector: difference.Detector,
     background: difference.Background,
-    sigmas: float,
+    config: config_lib.Differencing,
     home: difference.Box,
     near: difference.Box,
   ) -> None:
@@ -58,7 +60,7 @@ class Separation:
     Args:
       detector: Weighs differences.
       background: (H, W) with the target in it.
-      sigmas: How far above noise a difference must be.
+      config: The tracker's numbers.
       home: Where the target hovers...
       near: ...and where it is just after it has left: what changes elsewhere
         is not its doing.
@@ -66,7 +68,7 @@ class Separation:
     self._home, self._near = home, near
     self._detector = detector
     self._background = background
-    self._sigmas = sigmas
+    self._config = config
     self.greys: list[tuple[float, np.ndarray]] = []
 
   def add(self, grey: np.ndarray, time_s: float) -> None:
@@ -81,18 +83,25 @@ class Separation:
       return None
     known, grey_before = self._background, older[-1]
     before = difference.Background(grey_before, known.variance, known.slack)
-    weigh, sigmas = self._detector.weights, self._sigmas
-    blobs = difference.Blobs(weigh(grey, self._background, sigmas))
+    weigh, sigmas = self._detector.weights, self._config.watch_sigmas
+    blobs = difference.Blobs(weigh(grey, self._background, sigmas, wide=True))
     totals = np.where(blobs.inside(self._near), blobs.totals, 0.0)
-    changes = blobs.sums(weigh(grey, before, sigmas, spread=2.0))
+    changes = blobs.sums(weigh(grey, before, sigmas, spread=2.0, wide=True))
     large = totals > _MIN_SHARE * totals.max()
     still = large & (changes < _MAX_CHANGE * totals)
-    home = still & blobs.inside(self._home)
+    home = np.flatnonzero(still & blobs.inside(self._home))
+    if not len(home):
+      return None
+    middle_px = np.array([grey.shape[1], grey.shape[0]]) / 2
+    home = blobs.about(home, middle_px)
     rest, motion = totals[home].sum(), totals[large & ~still].sum()
     if min(rest, motion) <= _MIN_BALANCE * max(rest, motion):
       return None
-    found = self._ghost(blobs.only(np.flatnonzero(home)))
-    return found if found.width_px >= _MIN_WIDTH_PX else None
+    found = self._ghost(blobs.only(home))
+    away_px = math.hypot(*(found.anchor_px - middle_px))
+    config, width_px = self._config, found.width_px
+    reach_px = max(config.middle_px, config.middle_widths * width_px)
+    return found if width_px >= _MIN_WIDTH_PX and away_px <= reach_px else None
 
   def _ghost(self, weights: np.ndarray) -> Ghost:
     total, anchor_px = difference.centroid(weights, (0, 0))

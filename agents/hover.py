@@ -5,9 +5,8 @@ import dataclasses
 import cv2
 import numpy as np
 
-from waggle_tasks.agents import alignment, difference, ghost
+from waggle_tasks.agents import alignment, difference, ghost, learning
 from waggle_tasks.agents import config as config_lib
-from waggle_tasks.agents import noise as noise_lib
 
 _CONTRAST_PX = 96  # Side of the square in which there must be something.
 _REST_PX = 128  # Side of the square in which a target rests.
@@ -22,6 +21,7 @@ class Departure:
   Attributes:
     alignment: Brings pictures to the background.
     detector: Weighs differences.
+    speckled: Whether pixels are bad for a moment here and there.
     background: (H, W) with the target in it.
     slack_px: How far pictures may be out of place.
     ghost: Where the target was.
@@ -30,6 +30,7 @@ class Departure:
 
   alignment: alignment.Alignment
   detector: difference.Detector
+  speckled: bool
   background: difference.Background
   slack_px: float
   ghost: ghost.Ghost
@@ -46,6 +47,7 @@ class Hover:
   def __init__(self, config: config_lib.Differencing) -> None:
     self._config = config
     self._slack_px = 0.0
+    self._speckled = False
     self._forget()
 
   def _forget(self) -> None:
@@ -57,6 +59,7 @@ class Hover:
   def step(self, image: np.ndarray, time_s: float) -> Departure | None:
     """Takes an image, (H, W, 3) uint8 RGB, later than the last one."""
     self.visible = False
+    image = self._clean(image)
     if self._alignment is None:
       self._begin(image, time_s)
       return None
@@ -71,45 +74,51 @@ class Hover:
     if self._background is not None:
       return self._watch(aligned, time_s)
     if not self._learn(difference.grey(aligned), time_s):
-      self._begin(image, time_s)
+      self._begin(self._clean(image), time_s)
     return None
+
+  def _clean(self, image: np.ndarray) -> np.ndarray:
+    return difference.despeckled(image) if self._speckled else image
 
   def _begin(self, image: np.ndarray, time_s: float) -> None:
     """Learns anew, with this image as the first."""
     self._alignment = alignment.Alignment(image)
     grey = difference.grey(image)
-    self._first = difference.Background(grey)
-    self._first.loosen(self._slack_px)
+    self._scene = learning.Scene(
+      self._config, grey, _middle(grey, _REST_PX),
+      _middle(grey, self._config.watch_px),
+    )  # fmt: skip
+    self._scene.first.loosen(self._slack_px)
+    self._detector = self._scene.detector
     self._know_target(grey)
-    self._sum = grey.astype(np.float32)
-    self._count, self._since_s = 1, time_s
+    self._since_s = time_s
     smooth = difference.soften(grey[_middle(grey, _CONTRAST_PX)])
     self._contrast = bool(np.ptp(smooth) >= self._config.min_contrast)
 
   def _loosen(self) -> None:
     """Allows everything to be a little out of place from now on."""
     self._slack_px = self._config.slack_px
-    for each in filter(None, (self._first, self._background)):
+    for each in filter(None, (self._scene.first, self._background)):
       each.loosen(self._slack_px)
 
   def _learn(self, grey: np.ndarray, time_s: float) -> bool:
     """Adds an image to the background, unless something has moved."""
-    middle = _middle(grey, self._config.watch_px)
-    if self._count == 1:
-      noise = noise_lib.Noise(self._first.grey, grey)
-      self._detector = difference.Detector(self._config, noise)
-      soft = difference.soften(self._first.grey)
-      self._first.variance = self._detector.background(soft).variance
-    moved = self._moved(grey[middle], self._first[middle], 2.0)
-    if moved and not self._hardly_moved(grey, self._first, 2.0):
+    scene, middle = self._scene, _middle(grey, self._config.watch_px)
+    scene.look(grey)
+    self._detector = scene.detector
+    if scene.speckled and not self._speckled:
+      self._speckled = True  # Such pictures are another scene.
       return False
-    cv2.accumulate(grey, self._sum)
-    self._count += 1
+    moved = self._moved(grey[middle], scene.first[middle], 2.0)
+    if moved and not self._hardly_moved(grey, scene.first, 2.0):
+      return False
+    scene.add(grey)
     self.visible = self._contrast
     if config_lib.lasted(self._since_s, time_s, self._config.learn_s):
-      mean = np.rint(self._sum / self._count).astype(np.uint8)
-      self._background = self._detector.background(mean)
+      self._background = scene.background
+      self._detector = scene.detector
       self._background.loosen(self._slack_px)
+      mean = self._background.grey
       self._alignment = alignment.Alignment(mean)
       self._know_target(mean)
       self._last = None
@@ -123,7 +132,7 @@ class Hover:
       if self._moved(grey, self._background[middle], 1.0):
         self._since_s = time_s
         self._separation = ghost.Separation(
-          self._detector, self._strict(), self._config.watch_sigmas,
+          self._detector, self._strict(), self._config,
           _middle(image, _REST_PX), middle,
         )  # fmt: skip
         return self._separate(difference.grey(image), time_s)
@@ -139,16 +148,20 @@ class Hover:
     return difference.Background(known.grey, known.variance, slack)
 
   def _change(
-    self, grey: np.ndarray, background: difference.Background, spread: float
+    self,
+    grey: np.ndarray,
+    background: difference.Background,
+    spread: float,
+    wide: bool = False,
   ) -> np.ndarray:
     """Weights (h, w) of a part's difference from what is behind it."""
     sigmas = self._config.watch_sigmas
-    return self._detector.weights(grey, background, sigmas, spread)
+    return self._detector.weights(grey, background, sigmas, spread, wide)
 
   def _moved(
     self, grey: np.ndarray, background: difference.Background, spread: float
   ) -> bool:
-    weights = self._change(grey, background, spread)
+    weights = self._change(grey, background, spread, wide=True)
     # In noise every difference is as large as the box that it is summed in.
     box_pixels = self._config.box_px**2 // 2
     least = box_pixels if self._detector.noisy else _MIN_PIXELS
@@ -188,8 +201,8 @@ class Hover:
     self.visible = resting and self._contrast
     if not resting and (found := separation.find()):
       return Departure(
-        self._alignment, self._detector, self._background, self._slack_px,
-        found, separation.greys,
+        self._alignment, self._detector, self._speckled, self._background,
+        self._slack_px, found, separation.greys,
       )  # fmt: skip
     if not self._moved(grey, self._background, 1.0):
       self._separation = None

@@ -3,7 +3,8 @@
 A part of a picture is compared with what is behind the target in it, in cells.
 Where most cells have become brighter or darker, a gain that is a plane over the
 part, and an offset, explain it, found by least squares without the cells that
-do not fit, which is where the target is. What they leave unexplained, such as
+do not fit, which is where the target is. In a part that is wide beside a target
+each cell goes with most of those around it. What is left unexplained, such as
 the edge of a shadow, is told as well, so that it is taken for no target.
 """
 
@@ -25,6 +26,7 @@ def lit(
   background: np.ndarray,  # (h, w) uint8
   grey: np.ndarray,  # (h, w) uint8
   noise: float,
+  wide: bool = False,
 ) -> tuple[np.ndarray, int]:
   """What is behind a target, in the light of another picture.
 
@@ -32,23 +34,24 @@ def lit(
     background: What was behind it.
     grey: The other picture.
     noise: Standard deviation of a pixel's noise, in grey levels.
+    wide: Whether a target covers little of it.
 
   Returns:
     (h, w) uint8, the background itself where light is as it was; and how many
     grey levels of difference light may still make.
   """
   cell_px = max(min(grey.shape) // _CELLS, _LEAST_PX)
+  if _same(background, grey, cell_px, _LEVELS + noise):
+    return background, 0
   size = tuple(max(length // cell_px, 1) for length in grey.shape[::-1])
   now, was = (
     cv2.resize(each, size, interpolation=cv2.INTER_AREA)
     for each in (grey, background)
   )
   change = cv2.subtract(now, was, dtype=cv2.CV_32F)
-  ranked = np.sort(change, axis=None)
-  quarter = len(ranked) // 4
   limit = _LEVELS + noise / cell_px
-  if max(-ranked[quarter], ranked[-1 - quarter]) < limit:
-    return background, 0
+  if wide:
+    return _nearby(background, change, was)
   gain, offset, unexplained = _fit(change, was, limit)
   rows, columns = (
     np.linspace(-1.0, 1.0, length, dtype=np.float32) for length in grey.shape
@@ -57,6 +60,30 @@ def lit(
   bright = cv2.multiply(background, factor, dtype=cv2.CV_32F)
   levels = np.clip(np.rint(bright + offset), 0, 255).astype(np.uint8)
   return levels, unexplained
+
+
+def _same(
+  background: np.ndarray, grey: np.ndarray, step_px: int, limit: float
+) -> bool:
+  """Whether light is as it was, by one pixel of each cell: a quick look."""
+  grid = slice(step_px // 2, None, step_px), slice(step_px // 2, None, step_px)
+  ranked = np.sort(grey[grid].astype(np.int16) - background[grid], axis=None)
+  quarter = len(ranked) // 4
+  return bool(max(-ranked[quarter], ranked[-1 - quarter]) <= limit)
+
+
+def _nearby(
+  background: np.ndarray,  # (h, w) uint8
+  change: np.ndarray,  # (n, m) float32
+  was: np.ndarray,  # (n, m) uint8
+) -> tuple[np.ndarray, int]:
+  """The background with each place as much brighter as most cells near it."""
+  gain = change / np.maximum(was, 1).astype(np.float32)
+  gain = cv2.medianBlur(gain, 5)
+  left = np.sort(np.abs(change - gain * was), axis=None)
+  rest = float(left[int(_UNEXPLAINED * (len(left) - 1))])
+  factor = cv2.resize(1 + gain, background.shape[::-1])
+  return cv2.multiply(background, factor, dtype=cv2.CV_8U), int(_TIMES * rest)
 
 
 def _fit(

@@ -7,6 +7,10 @@ import numpy as np
 
 _BAND = 16  # Grey levels of like noise...
 _FEWEST = 500  # ...that so many pixels tell.
+# A pixel is bad for a moment when it differs by so many grey levels and
+# standard deviations of the rest, and only so many about it do.
+_SPECKLE, _SPECKLE_SIGMAS, _ALONE = 20.0, 8.0, 4
+_SPECKLED = 1e-4  # Share of bad pixels of a camera that has some.
 
 
 class Noise:
@@ -43,6 +47,21 @@ class Noise:
     table = np.polyval(self._line, np.arange(256))
     table = np.maximum(table, self.overall**2)
     return cv2.LUT(grey, table.astype(np.float32))
+
+
+def speckled(one: np.ndarray, other: np.ndarray, noise: float) -> bool:
+  """Whether pixels of two images of one scene are bad for a moment.
+
+  Args:
+    one: (h, w) uint8.
+    other: The same.
+    noise: Standard deviation of the rest, in grey levels.
+  """
+  limit = max(_SPECKLE, _SPECKLE_SIGMAS * noise)
+  _, bad = cv2.threshold(cv2.absdiff(one, other), limit, 1, cv2.THRESH_BINARY)
+  count = cv2.boxFilter(bad, -1, (3, 3), normalize=False)
+  alone = cv2.bitwise_and(bad, cv2.compare(count, _ALONE, cv2.CMP_LE))
+  return cv2.countNonZero(alone) > _SPECKLED * one.size
 
 
 def _variance(change: np.ndarray) -> float:

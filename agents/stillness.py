@@ -11,6 +11,7 @@ from waggle_tasks.agents import config as config_lib
 from waggle_tasks.agents import klt
 
 _IN_SIGHT_S = 0.4  # Seen at rest without a break, after a loss.
+_JUMP_S = 0.6  # Within so long a jump of the picture is over.
 
 
 class StillnessDetector:
@@ -37,6 +38,7 @@ class StillnessDetector:
     self.since_s = math.nan
     self._in_sight_s = math.nan
     self._rested_s = -math.inf
+    self._place_px = np.full(2, np.nan)
     self._confirmed = False
 
   def begin(self) -> None:
@@ -63,12 +65,14 @@ class StillnessDetector:
     if not seen and self._blind_s and not moving:
       self._in_sight_s = math.nan
       return False  # Judged when it is seen again.
+    if not moving and seen and self._jumps(track):
+      return False
     if moving or not seen or not self._still(track, anchor_px):
       self.since_s = self._in_sight_s = math.nan
       return False
     if now_s - self._rested_s > self._max_gap_s + 1e-6:
       self.since_s = self._in_sight_s = math.nan
-    self._rested_s = now_s
+    self._rested_s, self._place_px = now_s, track.centre_px
     if math.isnan(self.since_s):
       self.since_s = now_s
     if math.isnan(self._in_sight_s):
@@ -80,6 +84,19 @@ class StillnessDetector:
       return False
     self._confirmed = True
     return True
+
+  def _jumps(self, track: klt.Track) -> bool:
+    """Whether it is fast for a moment, and no farther than a jump from rest.
+
+    The pictures of an encoder stay behind, and then catch up at once.
+    """
+    late = track.time_s - self._rested_s > _JUMP_S
+    if math.isnan(self.since_s) or late or not self._config.jump_widths:
+      return False
+    way_px = float(np.hypot(*(track.centre_px - self._place_px)))
+    return way_px <= self._config.jump_px(
+      track.width_px
+    ) and track.speed_px_s >= self._config.slow_px_s(track.width_px)
 
   def _still(self, track: klt.Track, anchor_px: np.ndarray) -> bool:
     config = self._config

@@ -20,7 +20,13 @@ import numpy as np
 import pytest
 
 from waggle_tasks import registry
-from waggle_tasks.protocol import flight, gestures, reference, timing
+from waggle_tasks.protocol import (
+  agreement,
+  flight,
+  gestures,
+  reference,
+  timing,
+)
 
 # A busy machine is slow, which is no failure.
 hypothesis.settings.register_profile('patient', deadline=None)
@@ -68,6 +74,12 @@ def short() -> dict[str, object]:
     'codebook': gestures.v_codebook(0.12, 0.25, duration_s=2.0),
     'pauses': timing.Timing(3.2, 0.6, 2.0, 1.8),
   }
+
+
+@pytest.fixture(scope='session')
+def agreed(short: dict[str, object]) -> agreement.Agreement:
+  """What both sides know of the short dance."""
+  return agreement.Agreement(**short)
 
 
 @dataclasses.dataclass(frozen=True, eq=False)

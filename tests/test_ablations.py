@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from waggle_tasks.agents import config, klt, receiver, receivers
-from waggle_tasks.protocol import frame, gestures, payload
+from waggle_tasks.protocol import agreement, frame, payload
 from waggle_tasks.protocol.symbols import Symbol
 
 BLACK = np.zeros((480, 640, 3), np.uint8)
@@ -52,7 +52,7 @@ def test_every_combination_is_a_name(
   for key, on in switches.items():
     (value,) = [getattr(g, key) for g in groups if hasattr(g, key)]
     assert value is on
-  assert receivers.make(spec, gestures.v_codebook()).step(BLACK, 0.0) == ()
+  assert receivers.make(spec).step(BLACK, 0.0) == ()
 
 
 @pytest.mark.parametrize('name', TRACKERS)
@@ -159,7 +159,7 @@ def read(clip: object, short: dict[str, object]) -> Read:
   """Shows images to a receiver at the times of the rendered clip."""
 
   def show(name: str, images: Sequence[np.ndarray]) -> list[receiver.Event]:
-    reader = receivers.make(name, short['codebook'])
+    reader = receivers.make(name, agreement.Agreement(**short))
     return [
       event
       for image, time_s in zip(images, clip.times_s, strict=False)

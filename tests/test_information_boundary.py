@@ -9,7 +9,7 @@ import pytest
 
 from waggle_tasks import registry
 from waggle_tasks.agents import observer_agent, receiver, receivers
-from waggle_tasks.protocol import gestures
+from waggle_tasks.protocol import agreement
 
 SHAPE = (480, 640, 3)
 
@@ -18,7 +18,7 @@ SHAPE = (480, 640, 3)
 def test_a_receiver_takes_an_image_and_its_time(name: str) -> None:
   parameters = inspect.signature(receivers.RECEIVERS[name].step).parameters
   assert [*parameters] == ['self', 'image', 'time_s']
-  reader = receivers.make(name, gestures.v_codebook())
+  reader = receivers.make(name)
   assert reader.step(np.zeros(SHAPE, np.uint8), 0.0) == ()
 
 
@@ -91,8 +91,8 @@ def test_the_same_images_under_another_truth_give_the_same_events(
   short: dict[str, object],
   load: Callable[..., registry.composer.Environment],
 ) -> None:
-  codebook = short['codebook']
-  alone = receivers.make('klt', codebook)
+  agreed = agreement.Agreement(**short)
+  alone = receivers.make('klt', agreed)
   expected = [
     event
     for image, time_s in zip(clip.images, clip.times_s, strict=True)
@@ -101,8 +101,8 @@ def test_the_same_images_under_another_truth_give_the_same_events(
   assert len(expected) == 5
   changes = short | {'observers': 1, 'duration_s': 15.8} | truth
   environment = load(cameras=False, **changes)
-  team = observer_agent.Team(changes['observers'], 'klt', codebook)
-  tape = Tape(receivers.make('klt', codebook), clip)
+  team = observer_agent.Team(changes['observers'], 'klt', agreed)
+  tape = Tape(receivers.make('klt', agreed), clip)
   team.agents[0].receiver = tape
   blank = np.zeros(SHAPE, np.uint8)
   timestep = environment.reset()

@@ -101,7 +101,7 @@ def test_a_lost_target_is_taken_up_where_it_was(clip: object) -> None:
   assert found.valid
 
 
-@pytest.mark.parametrize(('gap_s', 'valid'), [(0.19, True), (0.21, False)])
+@pytest.mark.parametrize(('gap_s', 'valid'), [(0.29, True), (0.31, False)])
 def test_a_gap_between_two_images_breaks_the_track(
   gap_s: float, valid: bool, clip: object
 ) -> None:

@@ -7,7 +7,7 @@ import pytest
 
 from waggle_tasks import errors
 from waggle_tasks.agents import receiver, receivers
-from waggle_tasks.protocol import frame
+from waggle_tasks.protocol import agreement, frame
 from waggle_tasks.protocol.symbols import Symbol
 
 BLACK = np.zeros((480, 640, 3), np.uint8)
@@ -15,13 +15,13 @@ Read = Callable[..., list[receiver.Event]]
 
 
 @pytest.fixture
-def read(short: dict[str, object]) -> Read:
+def read(agreed: agreement.Agreement) -> Read:
   """Feeds images and their times to a receiver of the short dance."""
 
   def run(
     images: list[np.ndarray], times_s: list[float], name: str = 'klt'
   ) -> list[receiver.Event]:
-    reader = receivers.make(name, short['codebook'])
+    reader = receivers.make(name, agreed)
     out = []
     for image, time_s in zip(images, times_s, strict=True):
       events = reader.step(image, time_s)
@@ -139,9 +139,9 @@ def test_noise_of_a_camera_does_not_spoil_reading(
   ('name', 'hint'), [('ktl', 'Did you mean klt'), ('learned', 'klt')]
 )
 def test_an_unknown_receiver_is_refused_with_the_names_there_are(
-  name: str, hint: str, short: dict[str, object]
+  name: str, hint: str
 ) -> None:
   with pytest.raises(errors.WaggleError, match=hint) as caught:
-    receivers.make(name, short['codebook'])
+    receivers.make(name)
   assert str(caught.value).startswith('`receiver` must be one of [')
   assert repr(name) in str(caught.value)

@@ -9,7 +9,7 @@ import pytest
 
 from waggle_tasks import registry
 from waggle_tasks.agents import config, receivers
-from waggle_tasks.protocol import gestures, timing
+from waggle_tasks.protocol import timing
 
 
 def numbers(value: config.Config) -> dict[str, float]:
@@ -91,7 +91,7 @@ def test_a_receiver_that_does_not_exist_is_refused(
   name: str, error: str
 ) -> None:
   with pytest.raises(receivers.ReceiverError) as caught:
-    receivers.make(name, gestures.v_codebook())
+    receivers.make(name)
   assert re.search(error, str(caught.value))
 
 
@@ -105,7 +105,7 @@ def test_a_changed_number_is_the_one_that_reads(
   null_s: float | None,
 ) -> None:
   (seen,) = load(observers=1).reset().observation
-  reader = receivers.make(name, gestures.v_codebook())
+  reader = receivers.make(name)
   times_s = np.arange(80) * timing.FRAME_S
   events = [
     event for time_s in times_s for event in reader.step(seen['camera'], time_s)

@@ -6,7 +6,7 @@ import math
 import numpy as np
 import pytest
 
-from waggle_tasks.agents import config, recogniser, segmenter
+from waggle_tasks.agents import config, recogniser, segmenter, views
 from waggle_tasks.protocol import gestures
 from waggle_tasks.protocol.symbols import MOTIONS, Symbol
 
@@ -22,7 +22,8 @@ def recognise(
 ) -> recogniser.Recognition:
   """Names a path, (T, 2) pixels with x right and y down."""
   segment = segmenter.Segment(0.0, 1.0, np.array(path_px), loss)
-  return recogniser.Recogniser(codebook, limits).recognise(segment)
+  templates = views.frontal(codebook)
+  return recogniser.Recogniser(limits, templates).recognise(segment)
 
 
 def path_px(symbol: Symbol, span_px: float = 100.0) -> np.ndarray:

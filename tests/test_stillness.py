@@ -115,7 +115,7 @@ def test_a_null_is_slower_than_2_5_px_s(speed_px_s: float, still: bool) -> None:
     Frame(away_px=(0.0, 16.0)),
     Frame(valid=False),
     Frame(moving=True),
-    Frame(gap_s=0.24),
+    Frame(gap_s=0.34),
   ],
   ids=['fast', 'far', 'lost', 'gesture', 'gap'],
 )
@@ -128,7 +128,7 @@ def test_one_breach_begins_the_3_s_anew(breach: Frame) -> None:
 
 
 def test_a_short_gap_is_no_breach() -> None:
-  frames = [REST] * 40 + [Frame(gap_s=0.19)] + [REST] * 40
+  frames = [REST] * 40 + [Frame(gap_s=0.28)] + [REST] * 40
   assert len(nulls(frames)) == 1
 
 

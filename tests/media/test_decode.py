@@ -18,7 +18,7 @@ from waggle_tasks import suites
 from waggle_tasks.agents import config, receivers
 from waggle_tasks.experiments import capture, reader, recordings, records
 from waggle_tasks.experiments import rollout as rollout_lib
-from waggle_tasks.protocol import gestures
+from waggle_tasks.protocol import agreement, camera, gestures
 
 Waggle = Callable[..., subprocess.CompletedProcess[str]]
 Part = recordings.Part
@@ -58,7 +58,7 @@ def test_a_replay_gives_the_online_events_byte_for_byte(
   recorded: object, observer: str
 ) -> None:
   path = recorded.folder / 'raw' / f'{observer}.capture'
-  (work,) = reader.replay(path, ['klt'], recorded.scene.codebook)
+  (work,) = reader.replay(path, ['klt'], recorded.scene.agreement)
   assert reader.differences(work, recorded.folder, observer) == ''
   expected = recorded.verdict.outcomes[int(observer[-1]) - 1].decoded
   assert work.message == expected
@@ -67,7 +67,7 @@ def test_a_replay_gives_the_online_events_byte_for_byte(
 def test_a_replay_by_another_receiver_is_told_apart(recorded: object) -> None:
   path = recorded.folder / 'raw' / 'observer_1.capture'
   names = ['klt', 'klt:max_rmse=0.0001']
-  same, strict = reader.replay(path, names, recorded.scene.codebook)
+  same, strict = reader.replay(path, names, recorded.scene.agreement)
   assert reader.differences(same, recorded.folder, 'observer_1') == ''
   assert reader.differences(strict, recorded.folder, 'observer_1').startswith(
     '1 of 17 events are the same'
@@ -88,7 +88,7 @@ def test_images_that_others_are_than_those_of_the_message_are_noticed(
   with capture.Writer(source) as writer:
     for image, time_s in images:
       writer.write(image, time_s)
-  (work,) = reader.replay(source, ['klt'], recorded.scene.codebook)
+  (work,) = reader.replay(source, ['klt'], recorded.scene.agreement)
   assert reader.differences(work, copied, 'observer_1') == (
     'the images are not those that the message was made from'
   )
@@ -242,7 +242,7 @@ def test_replays_of_the_papers_cases_are_the_online_runs(
   (tmp_path / 'events.jsonl').write_text(''.join(f'{x}\n' for x in lines))
   for path in capture.paths(tmp_path):
     assert path.stat().st_size < 30e6
-    (work,) = reader.replay(path, [receiver], case.scene.codebook)
+    (work,) = reader.replay(path, [receiver], case.scene.agreement)
     assert reader.differences(work, tmp_path, path.stem) == ''
 
 
@@ -493,4 +493,6 @@ def test_only_pixels_grow_with_the_focal_length(factor: float) -> None:
 
 def test_every_receiver_takes_a_zoom() -> None:
   for name in receivers.RECEIVERS:
-    assert receivers.make(name, gestures.v_codebook(), 0.5)
+    assert receivers.make(
+      name, agreement.Agreement(camera=camera.Camera(320, 240, 207.8))
+    )

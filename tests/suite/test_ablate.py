@@ -11,7 +11,6 @@ import pytest
 
 from waggle_tasks.agents import receivers
 from waggle_tasks.experiments import ablations, evaluator
-from waggle_tasks.protocol import gestures
 
 Waggle = Callable[..., subprocess.CompletedProcess[str]]
 Row = dict[str, object]
@@ -20,7 +19,7 @@ Row = dict[str, object]
 @pytest.mark.parametrize('name', ablations.ABLATIONS)
 def test_every_ablation_is_a_receiver(name: str) -> None:
   ablation = ablations.ABLATIONS[name]
-  receivers.make(ablation.receiver, gestures.v_codebook())
+  receivers.make(ablation.receiver)
   assert ablation.changes == {}
   if ablation.full:
     assert ablations.ABLATIONS[ablation.full].full in ('', 'view_bank')

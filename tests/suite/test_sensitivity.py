@@ -23,7 +23,7 @@ def test_every_case_can_be_flown_with_every_choice(name: str) -> None:
   variant = variants.VARIANTS[name]
   for case in CASES:
     moved = dataclasses.replace(case.scene, **variant.changes)
-    receivers.make(variant.receiver, moved.codebook)
+    receivers.make(variant.receiver, moved.agreement)
 
 
 def test_every_variant_moves_something_else() -> None:

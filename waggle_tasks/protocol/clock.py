@@ -16,6 +16,8 @@ from waggle_tasks.protocol.symbols import Symbol
 
 # Of a gesture; to be away for less does not make one.
 _TELLING = 0.75
+# Of a gesture, what is seen at least: from the side it hardly leaves its rest.
+_LEAST = 0.7
 
 
 class ClockError(errors.WaggleError):
@@ -28,8 +30,8 @@ class Tolerance:
 
   Attributes:
     clock_rate: By what share the paces of two clocks may differ, 0 to 0.2.
-    clock_delay_s: How much later, or earlier, one motion may be noticed than another
-      one, 0 to 10 s.
+    clock_delay_s: How much later, or earlier, one motion may be noticed than
+      another one, 0 to 10 s.
   """
 
   clock_rate: float = 0.02
@@ -60,6 +62,11 @@ class Moment:
   end_s: float
   unseen_s: float = 0.0
   unseen_from_s: float = 0.0
+
+  @property
+  def middle_s(self) -> float:
+    """Half way."""
+    return (self.begin_s + self.end_s) / 2
 
 
 @dataclasses.dataclass(frozen=True)
@@ -101,16 +108,17 @@ class Clock:
       before: The motions of the frame before it; the first is START.
       moments: When they were.
     """
-    if not before:
-      return self._duration(symbol, now)
-    steps_s = [
-      self.codebook[s].duration_s + self.pauses.pause_s for s in before
-    ]
-    return (
-      self._duration(symbol, now)
-      or self._distance(symbol, now, before[-1], moments[-1], steps_s[-1])
-      or self._distance(symbol, now, before[0], moments[0], sum(steps_s))
-    )
+    reason = self._duration(symbol, now)
+    if reason or not before:
+      return reason
+    lasts_s = [self.codebook[each].duration_s for each in (*before, symbol)]
+    # From middle to middle, as slow beginnings and ends are hardly seen.
+    last_s = sum(lasts_s[-2:]) / 2 + self.pauses.pause_s
+    first_s = sum(lasts_s) - (lasts_s[0] + lasts_s[-1]) / 2
+    first_s += self.pauses.pause_s * len(before)
+    return self._distance(
+      symbol, now, before[-1], moments[-1], last_s
+    ) or self._distance(symbol, now, before[0], moments[0], first_s)
 
   def _distance(
     self,
@@ -121,24 +129,23 @@ class Clock:
     agreed_s: float,
   ) -> str:
     allowed_s = self.tolerance.allowed_s(agreed_s)
-    elapsed_s = now.begin_s - then.begin_s
+    elapsed_s = now.middle_s - then.middle_s
     if abs(elapsed_s - agreed_s) <= allowed_s:
       return ''
     return (
-      f'{symbol} must begin {agreed_s:.1f} s after {earlier}, within'
-      f' {allowed_s:.1f} s: it began {elapsed_s:.1f} s after it'
+      f'{symbol} must come {agreed_s:.1f} s after {earlier}, within'
+      f' {allowed_s:.1f} s: it came {elapsed_s:.1f} s after it'
     )
 
   def _duration(self, symbol: Symbol, now: Moment) -> str:
-    lasts_s, lasted_s = (
-      self.codebook[symbol].duration_s,
-      now.end_s - now.begin_s,
-    )
+    lasts_s = self.codebook[symbol].duration_s
+    lasted_s = now.end_s - now.begin_s
     allowed_s = self.tolerance.allowed_s(lasts_s)
-    if abs(lasted_s - lasts_s) <= allowed_s:
+    least_s, most_s = _LEAST * lasts_s - allowed_s, lasts_s + allowed_s
+    if least_s <= lasted_s <= most_s:
       return ''
     return (
-      f'{symbol} must last {lasts_s:.1f} s, within {allowed_s:.1f} s: it lasted'
+      f'{symbol} must last {max(least_s, 0):.1f} to {most_s:.1f} s: it lasted'
       f' {lasted_s:.1f} s'
     )
 
