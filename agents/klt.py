@@ -133,7 +133,7 @@ class KltTracker:
     followed = len(self._points)
     shift_px, support = np.zeros(2), 0
     if followed:
-      shift_px, support = self._follow(patch)
+      shift_px, support = self._follow(patch, elapsed_s)
     quality = support / followed if followed else 0.0
     valid = support >= config.min_support and quality >= config.min_quality
     if valid:
@@ -162,7 +162,7 @@ class KltTracker:
     left, top = (int(c - side_px / 2) for c in self._centre_px)
     return patch.crop(left, top, left + side_px, top + side_px)
 
-  def _follow(self, patch: _Patch) -> tuple[np.ndarray, int]:
+  def _follow(self, patch: _Patch, elapsed_s: float) -> tuple[np.ndarray, int]:
     """Moves the features to the new image; the target's shift and support."""
     config = self._config
     before = self._square(self._last, 2 * config.box_px)
@@ -175,9 +175,12 @@ class KltTracker:
     if before.grey.shape != after.grey.shape:
       return np.zeros(2), 0  # It moved further than a patch reaches.
     start = (self._points - before.origin_px)[:, None]
-    there, kept = self._flow(before, after, start)
+    # In twice the time features go twice as far, which a level more reaches.
+    more = max(round(math.log2(elapsed_s / _SPEED_S)), 0)
+    levels = self._config.levels + more
+    there, kept = self._flow(before, after, start, levels)
     if config.forward_backward:
-      back, returned = self._flow(after, before, there)
+      back, returned = self._flow(after, before, there, levels)
       error_px = np.hypot(*(back - start)[:, 0].T)
       kept &= returned & (error_px < config.forward_backward_px)
     there = there[:, 0] + before.origin_px
@@ -191,10 +194,10 @@ class KltTracker:
     return median.astype(float), int(agree.sum())
 
   def _flow(
-    self, before: _Patch, after: _Patch, points: np.ndarray
+    self, before: _Patch, after: _Patch, points: np.ndarray, levels: int
   ) -> tuple[np.ndarray, np.ndarray]:
     """Where points (N, 1, 2) go, and (N,) whether they were found there."""
-    side_px, levels = self._config.window_px, self._config.levels
+    side_px = self._config.window_px
     there, found, _ = cv2.calcOpticalFlowPyrLK(
       before.grey, after.grey, points, None,
       winSize=(side_px, side_px), maxLevel=levels,
