@@ -12,7 +12,7 @@ import dataclasses
 import cv2
 import numpy as np
 
-from waggle_tasks.agents import difference
+from waggle_tasks.agents import bands, difference
 
 _STEEP = 2.0  # Edges are of so many grey levels per pixel...
 _USUAL = 8.0  # ...and so many times the usual.
@@ -41,6 +41,7 @@ class Edges:
     fewest: Fewer tell nothing.
     grid: Along each side, more pixels that tell of light.
     settles: Whether a shift that may be none is none.
+    banded: Whether rows may be brighter by themselves.
   """
 
   cell_px: int
@@ -48,12 +49,13 @@ class Edges:
   fewest: int
   grid: int
   settles: bool
+  banded: bool
 
 
 # All but the target, which may move by itself.
-ROOM = Edges(16, 160, 24, 8, True)
+ROOM = Edges(16, 160, 24, 8, True, True)
 # Of a picture of little else.
-TARGET = Edges(4, 0, 8, 2, False)
+TARGET = Edges(4, 0, 8, 2, False, False)
 
 
 class Alignment:
@@ -89,6 +91,8 @@ class Alignment:
     self._range = float(np.abs(levels - levels.mean()).mean())
     self._useful = np.ptp(levels) > _MIN_RANGE
     self._fit = _NOTHING
+    self._banded = edges.banded
+    self._bands = bands.Bands(self._reference)
     self._sways = self.moving = False
 
   @property
@@ -104,8 +108,13 @@ class Alignment:
       uint8 grey like the reference; None when it is another picture.
     """
     self.moving = False
-    rested = self._fit is _NOTHING
-    if not self._useful or (rested and self._as_it_was(image)):
+    if not self._useful:
+      return image
+    change = self._change(image)
+    if self._banded and not self._sways and _scatter(change) >= _STILL_LEVELS:
+      image = self._bands.undo(difference.grey(image))
+      change = self._change(image)
+    if self._fit is _NOTHING and self._as_it_was(change):
       return image
     grey = difference.grey(image)
     return self._undo(grey) if self._find(grey) else None
@@ -130,11 +139,13 @@ class Alignment:
     self._fit = _NOTHING if still else fit
     return True
 
-  def _as_it_was(self, image: np.ndarray) -> bool:
-    """Whether a first guess, which is quick, finds nothing to undo."""
+  def _change(self, image: np.ndarray) -> np.ndarray:
+    """What an image has more than the reference, (K,), where pixels tell."""
     in_a_row = image.reshape(1, self._reference.size, *image.shape[2:])
-    seen = difference.grey(in_a_row[:, self._index])[0]
-    change = seen - self._sharp
+    return difference.grey(in_a_row[:, self._index])[0] - self._sharp
+
+  def _as_it_was(self, change: np.ndarray) -> bool:  # (K,)
+    """Whether a first guess, which is quick, finds nothing to undo."""
     scatter = _scatter(change)
     limit = _outlier(scatter)
     guess = self._inverse @ np.clip(change, -limit, limit)

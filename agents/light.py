@@ -15,6 +15,7 @@ import numpy as np
 
 _CELLS = 12  # Along the shorter side.
 _LEAST_PX = 4  # Side of a cell.
+_NEAR = 5  # Cells along a square that are near each other.
 _LEVELS = 1.0  # Changes of less are left alone, in grey levels.
 _STEPS = 3  # Of least squares, each without the outliers of the last.
 _OUTLIER = 3.0  # Times the median of all residuals.
@@ -44,14 +45,11 @@ def lit(
   if _same(background, grey, cell_px, _LEVELS + noise):
     return background, 0
   size = tuple(max(length // cell_px, 1) for length in grey.shape[::-1])
-  now, was = (
-    cv2.resize(each, size, interpolation=cv2.INTER_AREA)
-    for each in (grey, background)
-  )
+  if wide:
+    return _nearby(background, grey, size)
+  now, was = _cells(grey, size), _cells(background, size)
   change = cv2.subtract(now, was, dtype=cv2.CV_32F)
   limit = _LEVELS + noise / cell_px
-  if wide:
-    return _nearby(background, change, was)
   gain, offset, unexplained = _fit(change, was, limit)
   rows, columns = (
     np.linspace(-1.0, 1.0, length, dtype=np.float32) for length in grey.shape
@@ -72,14 +70,18 @@ def _same(
   return bool(max(-ranked[quarter], ranked[-1 - quarter]) <= limit)
 
 
+def _cells(grey: np.ndarray, size: tuple[int, int]) -> np.ndarray:
+  """Means (rows, columns) uint8 of a part in so many columns and rows."""
+  return cv2.resize(grey, size, interpolation=cv2.INTER_AREA)
+
+
 def _nearby(
-  background: np.ndarray,  # (h, w) uint8
-  change: np.ndarray,  # (n, m) float32
-  was: np.ndarray,  # (n, m) uint8
+  background: np.ndarray, grey: np.ndarray, size: tuple[int, int]
 ) -> tuple[np.ndarray, int]:
-  """The background with each place as much brighter as most cells near it."""
-  gain = change / np.maximum(was, 1).astype(np.float32)
-  gain = cv2.medianBlur(gain, 5)
+  """The background with each cell as much brighter as most of those near it."""
+  was = _cells(background, size).astype(np.float32)
+  change = _cells(grey, size) - was
+  gain = cv2.medianBlur(change / np.maximum(was, 1), _NEAR)
   left = np.sort(np.abs(change - gain * was), axis=None)
   rest = float(left[int(_UNEXPLAINED * (len(left) - 1))])
   factor = cv2.resize(1 + gain, background.shape[::-1])

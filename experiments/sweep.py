@@ -30,8 +30,10 @@ from waggle_tasks.experiments import (
   sweep_runner,
   sweep_tables,
 )
+from waggle_tasks.protocol import checks
 
 ARGUMENTS = '[FOLDER ...]'
+_MOST_REPLAYS = 10_000
 _MOST = 20  # Lines of a list that are printed; summary.txt has all.
 
 scenario_flags.define()
@@ -52,6 +54,10 @@ _SCHEDULER = flags.DEFINE_string(
   'scheduler', None, 'Fly on a Dask cluster: tcp://HOST:PORT of its scheduler,'
   ' or the JSON file that it wrote.',
 )  # fmt: skip
+_REPLAYS = flags.DEFINE_integer(
+  'replays', 0, 'Fly each case before observers who only watch, and show the'
+  ' images of each so many times to a receiver, spoilt in ways that are drawn.',
+)  # fmt: skip
 _OUTPUT = flags.DEFINE_string(
   'output', None, 'Result folder; unset, runs/sweep-RECEIVER-FIELDS.'
 )
@@ -69,6 +75,9 @@ def main(argv: Sequence[str]) -> int:
   grid = sweep_cases.grid(_GRID.value)
   cases = sweep_cases.cases(grid, scenario_flags.values(), _REPEATS.value)
   receivers.make(_RECEIVER.value, cases[0].scene.agreement)
+  checks.integer(
+    'replays', _REPLAYS.value, 0, _MOST_REPLAYS, sweep_cases.SweepError
+  )
   workers = launch.worker_count(_WORKERS)
   engine = functools.partial(pool.run, workers=workers)
   if _SCHEDULER.value is not None:
@@ -77,7 +86,9 @@ def main(argv: Sequence[str]) -> int:
   command = provenance.command_line('sweep', launch.given_flags())
   factors = '-'.join(['sweep', _RECEIVER.value, *grid])
   folder = pathlib.Path(_OUTPUT.value or f'runs/{factors}')
-  rows = sweep_runner.run(cases, _RECEIVER.value, folder, engine, command)
+  rows = sweep_runner.run(
+    cases, _RECEIVER.value, folder, engine, command, _REPLAYS.value
+  )
   return _show(folder, rows)
 
 

@@ -74,16 +74,23 @@ def _exposure(
   outcome: evaluator.Outcome, pose: layouts.Pose
 ) -> dict[str, object]:
   """What became of one observer, and where it stood."""
-  x_m, y_m, _ = pose.position_m
   stages = [failure.partition(':')[0] for failure in outcome.failures]
   return {
     **records.to_json(outcome),
-    'true_angle_deg': round(math.degrees(math.atan2(x_m, -y_m)), 6),
-    'true_distance_m': round(math.hypot(x_m, y_m), 6),
+    **place(pose),
     'right': outcome.decoded == outcome.expected,
     'wrong': outcome.wrong,
     'unauthorised': outcome.unauthorised,
     'stages': stages,
+  }
+
+
+def place(pose: layouts.Pose) -> dict[str, object]:
+  """Where an observer stands, seen from the performer."""
+  x_m, y_m, _ = pose.position_m
+  return {
+    'true_angle_deg': round(math.degrees(math.atan2(x_m, -y_m)), 6),
+    'true_distance_m': round(math.hypot(x_m, y_m), 6),
   }
 
 

@@ -15,6 +15,7 @@ from waggle_tasks.experiments import (
   pool,
   provenance,
   records,
+  replay_flight,
   result_folder,
   sweep_cases,
   sweep_flight,
@@ -41,6 +42,7 @@ def run(
   folder: pathlib.Path,
   engine: Engine,
   command: str,
+  replays: int = 0,
 ) -> list[dict[str, object]]:
   """Flies what is missing in a folder and returns one row for each case.
 
@@ -54,6 +56,8 @@ def run(
     folder: Where results are kept; made if needed.
     engine: What flies the cases.
     command: The shell line of the sweep.
+    replays: How many times each observer's images are shown again, spoilt, see
+      `replay_flight`; 0 to fly each case with its receivers.
 
   Returns:
     The rows of results.jsonl, in the order of `cases`.
@@ -67,12 +71,17 @@ def run(
   sources = provenance.source_hashes()
   digest = provenance.source_digest(sources)
   identities = [
-    records.identity(case.scene, receiver_name, digest) for case in cases
+    records.identity(case.scene, receiver_name, digest)
+    + (f' {replays} replays' if replays else '')
+    for case in cases
   ]
   with result_folder.locked(folder, _NAMES, 'sweep'):
     known = {row['identity']: row for row in journal.read(folder / JOURNAL)}
+    fly, more = sweep_flight.fly, ()
+    if replays:
+      fly, more = replay_flight.fly, (replays,)
     jobs = [
-      pool.Job(case.name, sweep_flight.fly, (case, receiver_name, identity))
+      pool.Job(case.name, fly, (case, receiver_name, identity, *more))
       for case, identity in zip(cases, identities, strict=True)
       if identity not in known
     ]

@@ -199,6 +199,47 @@ def _half_frame(rng: np.random.RandomState) -> list[Symbol]:
   return [Symbol.START, *bits[:half], Symbol.START, *bits[half:]]
 
 
+def _five_bits(rng: np.random.RandomState) -> list[Symbol]:
+  """A message with a bit too few."""
+  return [Symbol.START, *_bits(rng)[1:], Symbol.END]
+
+
+def _seven_bits(rng: np.random.RandomState) -> list[Symbol]:
+  """A message with a bit too many: with one hidden, six are left."""
+  return [Symbol.START, *_bits(rng), BITS[rng.randint(2)], Symbol.END]
+
+
+def _split(rng: np.random.RandomState) -> tuple[list[Symbol], list[Symbol]]:
+  """Six bits in two parts, neither of them empty."""
+  bits, first = _bits(rng), rng.randint(1, payload.NUM_BITS)
+  return bits[:first], bits[first:]
+
+
+def _begun_anew(rng: np.random.RandomState) -> list[Symbol]:
+  """Broken off and begun anew: with the second START hidden, six bits."""
+  before, after = _split(rng)
+  return [Symbol.START, *before, Symbol.START, *after, Symbol.END]
+
+
+def _run_together(rng: np.random.RandomState) -> list[Symbol]:
+  """Two short dances: with the end and START between hidden, six bits."""
+  before, after = _split(rng)
+  first = [Symbol.START, *before, Symbol.END]
+  return [*first, Symbol.START, *after, Symbol.END]
+
+
+def _start_repeated(rng: np.random.RandomState) -> list[Symbol]:
+  """START again and again, and a bit too few."""
+  starts = [Symbol.START] * rng.randint(2, 4)
+  return [*starts, *_bits(rng)[1:], Symbol.END]
+
+
+def _end_first(rng: np.random.RandomState) -> list[Symbol]:
+  """END where START should be, and sometimes START where END should be."""
+  last = (Symbol.START, Symbol.END)[rng.randint(2)]
+  return [Symbol.END, *_bits(rng), last]
+
+
 _FIGURE_MAKERS = {
   'circles': _circles,
   'diagonals': _diagonals,
@@ -209,6 +250,12 @@ _FRAME_MAKERS = {
   'swapped': _swapped,
   'repeated': _repeated,
   'half_frame': _half_frame,
+  'five_bits': _five_bits,
+  'seven_bits': _seven_bits,
+  'begun_anew': _begun_anew,
+  'run_together': _run_together,
+  'start_repeated': _start_repeated,
+  'end_first': _end_first,
 }
 DECOYS = (*_FIGURE_MAKERS, *_FRAME_MAKERS)
 
