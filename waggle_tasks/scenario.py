@@ -103,16 +103,10 @@ class Scenario:
         )
     checks.choice('control', self.control, CONTROLS, ScenarioError)
     checks.choice('camera', self.camera, observer.CAMERAS, ScenarioError)
-    integers = {
-      'observers': (1, MAX_OBSERVERS),
-      'seed': (0, 2**32 - 1),
+    counts = {'observers': (1, MAX_OBSERVERS), 'seed': (0, 2**32 - 1)}
+    checks.settle_numbers(self, counts, ScenarioError)
+    limits = {
       'black_observer': (1, self.observers),
-    }
-    if self.control != 'black_input':
-      del integers['black_observer']
-    for name, (low, high) in integers.items():
-      checks.integer(name, getattr(self, name), low, high, ScenarioError)
-    numbers = {
       'distance_m': (0.2, 4.0),
       'half_span_deg': (0.0, 180.0),
       'bearing_deg': (-180.0, 180.0),
@@ -122,10 +116,11 @@ class Scenario:
       'eye_offset_m': (-0.1, 0.1),
       'duration_s': (timing.FRAME_S, 600.0),
     }
+    if self.control != 'black_input':
+      del limits['black_observer']
     if self.duration_s is None:
-      del numbers['duration_s']
-    for name, (low, high) in numbers.items():
-      checks.number(name, getattr(self, name), low, high, ScenarioError)
+      del limits['duration_s']
+    checks.settle_numbers(self, limits, ScenarioError)
     payload_lib.Payload.from_bits(self.payload)
     longest = payload_lib.Payload.from_bits('000011')
     reach_m = math.hypot(*longest.displacement_m(self.units))
