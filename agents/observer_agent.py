@@ -7,9 +7,16 @@ import math
 
 import numpy as np
 
+from waggle_tasks import errors
 from waggle_tasks.agents import navigator as navigator_lib
 from waggle_tasks.agents import provenance, receiver, receivers
 from waggle_tasks.protocol import gestures, payload
+
+SIGHTS = ('camera', 'time_s', 'position_m')
+
+
+class ObservationError(errors.WaggleError):
+  """Observations that are not one for each agent, or lack what it needs."""
 
 
 class Deed(enum.StrEnum):
@@ -80,10 +87,10 @@ class ObserverAgent:
     time_s = float(observation['time_s'])
     if time_s <= self._time_s:
       return self._action
-    self._time_s = time_s
     position_m = np.asarray(observation['position_m'])
     if self._navigator.target_m is None:  # Navigating, it reads no more.
       self._read(observation['camera'], position_m, time_s)
+    self._time_s = time_s
     wanted = self._navigator.step(position_m, time_s)
     if self._navigator.arrival_s == time_s:
       self._note(Deed.ARRIVAL, time_s)
@@ -93,8 +100,9 @@ class ObserverAgent:
   def _read(
     self, image: np.ndarray, position_m: np.ndarray, time_s: float
   ) -> None:
+    events = self.receiver.step(image, time_s)  # It may refuse the image.
     self._chain.add(image, time_s)
-    for event in self.receiver.step(image, time_s):
+    for event in events:
       self.events.append(event)
       if event.message is not None:
         self._command = navigator_lib.Command(event.message, self._chain.digest)
@@ -150,8 +158,37 @@ class Team:
   def step(
     self, observations: Sequence[Mapping[str, np.ndarray]]
   ) -> list[np.ndarray]:
-    """Takes one observation for each agent and returns their actions."""
+    """Takes one observation for each agent and returns their actions.
+
+    Raises:
+      ObservationError: if there is not one for each agent, or one lacks what
+        an agent needs; no agent has taken anything then.
+    """
+    if len(observations) != len(self.agents):
+      raise ObservationError(
+        f'`observations` must be one for each of {len(self.agents)} agents:'
+        f' got {len(observations)}'
+      )
+    for number, observation in enumerate(observations, 1):
+      _check(number, observation)
     return [
       agent.step(observation)
       for agent, observation in zip(self.agents, observations, strict=True)
     ]
+
+
+def _check(number: int, observation: Mapping[str, np.ndarray]) -> None:
+  """Refuses an observation, of the agent of a number, that lacks something."""
+  is_one = isinstance(observation, Mapping)
+  missing = [name for name in SIGHTS if not is_one or name not in observation]
+  if missing:
+    raise ObservationError(
+      f'`observations` must each hold {", ".join(SIGHTS)}: that of agent'
+      f' {number} lacks {", ".join(missing)}'
+    )
+  position_m = np.asarray(observation['position_m'])
+  if position_m.shape != (3,) or not np.isfinite(position_m).all():
+    raise ObservationError(
+      f'`position_m` of agent {number} must be 3 finite numbers:'
+      f' got {position_m}'
+    )

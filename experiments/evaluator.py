@@ -260,9 +260,9 @@ def _fly(
   """Arrival and hold at the place that was sent, by true positions."""
   positions_m, times_s = rollout.steady_m(name), rollout.times_s
   begin = int(np.searchsorted(times_s, message_s - timing.FRAME_S / 2))
-  # An observer flies from where it was, drift and all, at the agreed height.
-  drift_m = (rollout.positions_m[name] - positions_m)[begin] * (1, 1, 0)
-  target_m = positions_m[begin] + drift_m + expected_displacement_m(scene)
+  # An observer flies from where it was, drift and all, to the agreed height.
+  target_m = rollout.positions_m[name][begin] + expected_displacement_m(scene)
+  target_m[2] = flight.HOVER_HEIGHT_M
   error_m = np.linalg.norm(positions_m - target_m, axis=1)
   speed_mps = (
     np.linalg.norm(

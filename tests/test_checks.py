@@ -57,7 +57,7 @@ def text(value: object) -> str:
 
 
 @pytest.mark.parametrize('kind', [np.int64, np.uint8, np.int16])
-@pytest.mark.parametrize('name', [*WHOLE, *sorted(set(ANY) - {'width'})])
+@pytest.mark.parametrize('name', sorted((WHOLE | ANY).keys() - {'width'}))
 def test_any_whole_number_is_kept_as_a_plain_int(
   name: str, kind: Number
 ) -> None:
@@ -83,12 +83,10 @@ def test_any_real_number_is_kept_as_a_plain_float(
   assert pickle.dumps(made) == pickle.dumps(plain)
 
 
-@pytest.mark.parametrize('value', [True, np.True_, '1', None, 1j, np.ones(1)])
-@pytest.mark.parametrize(
-  'name', [*WHOLE, *sorted(set(ANY) - {'duration_s', 'pose'})]
-)
+@pytest.mark.parametrize('value', [True, np.True_, '1', 1j, np.ones(1)])
+@pytest.mark.parametrize('name', sorted((WHOLE | ANY).keys() - {'pose'}))
 def test_what_is_no_number_is_refused(name: str, value: object) -> None:
-  with pytest.raises(errors.WaggleError, match='number|integer'):
+  with pytest.raises(errors.WaggleError, match=r'number|integer'):
     (WHOLE | ANY)[name](value)
 
 

@@ -4,6 +4,7 @@ import dataclasses
 
 from dm_control import composer
 
+from waggle_tasks import errors
 from waggle_tasks import scenario as scenario_lib
 from waggle_tasks.arenas import flight_room
 from waggle_tasks.entities import observer, performer
@@ -12,6 +13,27 @@ from waggle_tasks.tasks import broadcast, controls
 from waggle_tasks.tasks import parts as parts_lib
 
 Scenario = scenario_lib.Scenario
+
+
+class CopyError(errors.WaggleError):
+  """A copy of what cannot be copied."""
+
+
+class Environment(composer.Environment):
+  """A composer environment that says why it cannot be copied."""
+
+  def __reduce_ex__(self, protocol: int) -> tuple:
+    """Refuses to be copied or pickled.
+
+    Raises:
+      CopyError: always.
+    """
+    raise CopyError(
+      'an environment holds a running simulation and cannot be copied or'
+      ' pickled: copy or pickle its `Scenario` and make another one of it, with'
+      ' `waggle_tasks.load` or `waggle_tasks.registry.environment`'
+    )
+
 
 SCENARIOS = {
   'broadcast': Scenario(),
@@ -77,9 +99,9 @@ def build(scenario: Scenario) -> broadcast.Broadcast:
   return broadcast.Broadcast(parts)
 
 
-def environment(scenario: Scenario) -> composer.Environment:
+def environment(scenario: Scenario) -> Environment:
   """The environment of a scenario; close it in the thread that made it."""
-  return composer.Environment(
+  return Environment(
     build(scenario),
     random_state=scenario.seed,
     strip_singleton_obs_buffer_dim=True,
@@ -87,7 +109,7 @@ def environment(scenario: Scenario) -> composer.Environment:
   )
 
 
-def load(name: str, **changes: object) -> composer.Environment:
+def load(name: str, **changes: object) -> Environment:
   """Makes the environment of a named scenario.
 
   Args:

@@ -8,14 +8,20 @@ from dm_control.composer.observation import observable
 from dm_env import specs
 import numpy as np
 
+from waggle_tasks import errors
 from waggle_tasks.arenas import flight_room, layouts
 from waggle_tasks.entities import controller, observer, performer
 from waggle_tasks.protocol import flight, reference, timing
 from waggle_tasks.tasks import actions, progress, safety
+from waggle_tasks.tasks import clock as clock_lib
 from waggle_tasks.tasks import parts as parts_lib
 
 PHYSICS_TIMESTEP_S = 0.004
 OBSERVATIONS = ('camera', 'time_s', 'position_m')
+
+
+class ObservableError(errors.WaggleError):
+  """Something is to be observed by nobody."""
 
 
 class Broadcast(composer.Task):
@@ -53,8 +59,8 @@ class Broadcast(composer.Task):
         parts.room.mjcf_model, vehicle, pose.yaw_rad
       )
     for visible in self.observables:
-      for each in visible.values():
-        each.enabled = True
+      for name in OBSERVATIONS:
+        visible[name].enabled = True
     self.set_timesteps(timing.FRAME_S, PHYSICS_TIMESTEP_S)
 
   @property
@@ -74,12 +80,34 @@ class Broadcast(composer.Task):
 
   @property
   def observables(self) -> list[dict[str, observable.Observable]]:
-    """For each observer what it may see."""
+    """For each observer what it may see; those of `OBSERVATIONS` are on."""
     everything = [
       each.observables.as_dict(fully_qualified=False)
       for each in self._observers.values()
     ]
-    return [{name: all_[name] for name in OBSERVATIONS} for all_ in everything]
+    usual = [{name: all_[name] for name in OBSERVATIONS} for all_ in everything]
+    return [{**a, **b} for a, b in zip(usual, everything, strict=True)]
+
+  def set_timesteps(
+    self, control_timestep: float, physics_timestep: float
+  ) -> None:
+    """See `composer.Task`; a control step is a frame.
+
+    Raises:
+      ClockError: if it is not, or if the physics step is too long.
+    """
+    clock_lib.check_timesteps(control_timestep, physics_timestep)
+    super().set_timesteps(control_timestep, physics_timestep)
+
+  @composer.Task.control_timestep.setter
+  def control_timestep(self, new_value: float) -> None:
+    """See `set_timesteps`."""
+    self.set_timesteps(new_value, self.physics_timestep)
+
+  @composer.Task.physics_timestep.setter
+  def physics_timestep(self, new_value: float) -> None:
+    """See `set_timesteps`."""
+    self.set_timesteps(self.control_timestep, new_value)
 
   def after_compile(
     self, physics: mjcf.Physics, random_state: np.random.RandomState
@@ -95,7 +123,13 @@ class Broadcast(composer.Task):
   def initialize_episode(
     self, physics: mjcf.Physics, random_state: np.random.RandomState
   ) -> None:
-    """Places the vehicles and begins the dance."""
+    """Places the vehicles and begins the dance.
+
+    Raises:
+      ClockError: if the time step is not that which was compiled.
+      ObservableError: if something is to be observed that nobody can see.
+    """
+    self._check_switches(physics)
     poses = layouts.jittered(
       [self._parts.poses[name] for name in self._vehicles],
       self._parts.jitter_m,
@@ -113,8 +147,12 @@ class Broadcast(composer.Task):
         np.array(pose.position_m),
         np.array([math.cos(half_rad), 0.0, 0.0, math.sin(half_rad)]),
       )
-    self._frame = 0
+    self._clock = clock_lib.Clock(physics)
     self._begin_dance()
+    self._begin_flights()
+
+  def _begin_flights(self) -> None:
+    """Lets every observer wait at its place."""
     displacement_m = self._parts.message.displacement_m(self._parts.units)
     self._gates, self._progress = [], []
     self._requests: dict[str, flight.Flight] = {}
@@ -122,10 +160,29 @@ class Broadcast(composer.Task):
       home_m = np.array(self._homes[name].position_m)
       hold = reference.Reference.hover(home_m)
       self._gates.append(safety.Gate(name, hold))
-      target_m = home_m + displacement_m if self.sends_message else None
+      goal_m = flight.goal_m(home_m, displacement_m)
+      target_m = goal_m if self.sends_message else None
       self._progress.append(progress.Progress(home_m, target_m))
     self._rewards = [0.0] * len(self._observers)
     self._contacts: tuple[tuple[str, str], ...] = ()
+
+  def _check_switches(self, physics: mjcf.Physics) -> None:
+    """Refuses what was switched on and would have no effect."""
+    if physics.timestep() != self.physics_timestep:
+      raise clock_lib.ClockError(
+        '`physics_timestep` must be set before the first reset, which compiles'
+        f' it: {physics.timestep():g} s is compiled, {self.physics_timestep:g}'
+        ' s was asked for; `load` another environment'
+      )
+    for entity in self.root_entity.iter_entities():
+      if entity in self._observers.values():
+        continue
+      for name, each in entity.observables.as_dict().items():
+        if each.enabled:
+          raise ObservableError(
+            f'`enabled` of {name} must be False: only observers have'
+            f' observations, {", ".join(self._observers)}'
+          )
 
   def _begin_dance(self) -> None:
     """Tells the performer what to fly in this episode."""
@@ -149,7 +206,7 @@ class Broadcast(composer.Task):
   ) -> None:
     """Makes all physics steps of the control step but the last."""
     del action, random_state
-    steps = round(self.control_timestep / self.physics_timestep)
+    steps = round(self.control_timestep / physics.timestep())
     physics.step(steps - 1)
 
   def before_step(
@@ -162,10 +219,12 @@ class Broadcast(composer.Task):
 
     Raises:
       ActionError: if the action is not one finite reference per observer.
+      ClockError: if the physics was set to a state that cannot be flown on.
     """
     del random_state
-    time_s = self._frame * timing.FRAME_S
-    middle_s = time_s + timing.FRAME_S / 2
+    if self._clock.follow(physics):
+      self._replay(physics)
+    time_s, middle_s = self._clock.time_s, self._clock.middle_s
     home = self._homes['performer']
     motion = self.performer.motion(
       np.array(home.position_m), home.yaw_rad, middle_s
@@ -182,6 +241,21 @@ class Broadcast(composer.Task):
       )
       self._command(physics, gate.name, motion, followed.turn_rad)
 
+  def _replay(self, physics: mjcf.Physics) -> None:
+    """Goes on from a time that the physics was set to."""
+    if self._requests or any(g.plan or g.refusal for g in self._gates):
+      raise clock_lib.ClockError(
+        '`time` must not be set once an observer was given its command:'
+        ' `reset` and play the actions again'
+      )
+    if any(each.is_spoilt for each in self.observers):
+      raise clock_lib.ClockError(
+        '`time` must not be set where a sensor spoils images, as it draws on'
+        ' and on: `load` again with the same seed and play the actions again'
+      )
+    self._begin_flights()
+    physics.forward()
+
   def _command(
     self,
     physics: mjcf.Physics,
@@ -190,8 +264,7 @@ class Broadcast(composer.Task):
     turn_rad: float = 0.0,
   ) -> None:
     """Commands a vehicle to where it drifts from where it should be."""
-    middle_s = (self._frame + 0.5) * timing.FRAME_S
-    drift = self._wanders[name].at(middle_s)
+    drift = self._wanders[name].at((self._clock.frame + 0.5) * timing.FRAME_S)
     moved = [each + off[:3] for each, off in zip(motion, drift, strict=True)]
     self._controllers[name].command(physics, *moved, turn_rad + drift[0][3])
 
@@ -231,14 +304,13 @@ class Broadcast(composer.Task):
   ) -> None:
     """Takes stock of the step."""
     del random_state
-    self._frame += 1
+    self._clock.tick(physics)
     self._contacts = self._find_contacts(physics)
     positions_m = self.positions_m(physics)
     velocities_mps = self.velocities_mps(physics)
     drifts = self._drifts()
     authorised = (
-      self.sends_message
-      and self._frame * timing.FRAME_S >= self.performer.end_s
+      self.sends_message and self._clock.time_s >= self.performer.end_s
     )
     self._rewards = [
       each.update(
@@ -283,9 +355,9 @@ class Broadcast(composer.Task):
 
   def _drifts(self) -> dict[str, tuple[np.ndarray, np.ndarray]]:
     """Drift and its velocity now, (3,) each, by vehicle."""
-    time_s, out = self._frame * timing.FRAME_S, {}
+    out = {}
     for name, wander in self._wanders.items():
-      place, rate, _ = wander.at(time_s)
+      place, rate, _ = wander.at(self._clock.time_s)
       out[name] = place[:3], rate[:3]
     return out
 
@@ -314,7 +386,7 @@ class Broadcast(composer.Task):
     del physics
     return (
       bool(self._contacts)
-      or self._frame >= timing.frames(self._parts.duration_s)
+      or self._clock.frame >= timing.frames(self._parts.duration_s)
       or all(each.done for each in self._progress)
     )
 
