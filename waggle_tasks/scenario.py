@@ -8,7 +8,7 @@ from waggle_tasks import errors
 from waggle_tasks import sensor as sensor_lib
 from waggle_tasks.arenas import flight_room, layouts
 from waggle_tasks.entities import eye, observer
-from waggle_tasks.protocol import checks, decoys, gestures, timing
+from waggle_tasks.protocol import checks, decoys, gestures, limits, timing
 from waggle_tasks.protocol import payload as payload_lib
 from waggle_tasks.protocol import schedule as schedule_lib
 from waggle_tasks.tasks import drift as drift_lib
@@ -105,7 +105,7 @@ class Scenario:
     checks.choice('camera', self.camera, observer.CAMERAS, ScenarioError)
     counts = {'observers': (1, MAX_OBSERVERS), 'seed': (0, 2**32 - 1)}
     checks.settle_numbers(self, counts, ScenarioError)
-    limits = {
+    bounds = {
       'black_observer': (1, self.observers),
       'distance_m': (0.2, 4.0),
       'half_span_deg': (0.0, 180.0),
@@ -117,10 +117,11 @@ class Scenario:
       'duration_s': (timing.FRAME_S, 600.0),
     }
     if self.control != 'black_input':
-      del limits['black_observer']
+      del bounds['black_observer']
     if self.duration_s is None:
-      del limits['duration_s']
-    checks.settle_numbers(self, limits, ScenarioError)
+      del bounds['duration_s']
+    checks.settle_numbers(self, bounds, ScenarioError)
+    limits.check_codebook(self.codebook)
     payload_lib.Payload.from_bits(self.payload)
     longest = payload_lib.Payload.from_bits('000011')
     reach_m = math.hypot(*longest.displacement_m(self.units))

@@ -33,7 +33,7 @@ def check_timesteps(control_s: float, physics_s: float) -> None:
   Raises:
     ClockError: naming the time step, the rule and the value.
   """
-  if abs(control_s - timing.FRAME_S) > 1e-9:
+  if not abs(control_s - timing.FRAME_S) <= 1e-9:
     raise ClockError(
       f'`control_timestep` must be {timing.FRAME_S:g} s, as images, references'
       f' and the dance come at {timing.FRAME_RATE_HZ} Hz: got {control_s!r}'
