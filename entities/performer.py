@@ -69,7 +69,5 @@ class Performer(crazyflie.Crazyflie):
       offset, velocity, acceleration = minimum_jerk.to_rest(
         offset, velocity, acceleration, time_s - self._stop_s, BRAKE_S
       )
-    right = np.array([-math.sin(yaw_rad), math.cos(yaw_rad), 0.0])
-    away = np.array([-math.cos(yaw_rad), -math.sin(yaw_rad), 0.0])
-    axes = np.stack([right, [0.0, 0.0, 1.0], away])[: len(offset)]  # (D, 3)
+    axes = schedule_lib.axes(yaw_rad)[: len(offset)]  # (D, 3)
     return home_m + offset @ axes, velocity @ axes, acceleration @ axes

@@ -140,6 +140,19 @@ class Scenario:
     )
 
   @property
+  def stops_s(self) -> float:
+    """When the dance ends by itself, or is stopped; 0 without one."""
+    ends_s = {'no_send': 0.0, 'interrupted': self.stop_s}
+    return min(self.schedule.end_s, ends_s.get(self.control, math.inf))
+
+  @property
+  def sends_message(self) -> bool:
+    """Whether a whole message is danced."""
+    if self.control in ('no_send', *decoys.DECOYS):
+      return False
+    return self.stops_s >= self.schedule.end_s
+
+  @property
   def episode_s(self) -> float:
     """How long the episode lasts at most."""
     if self.duration_s is not None:
