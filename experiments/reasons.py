@@ -113,7 +113,13 @@ def _sight(trace: traces_lib.Trace, target_px: np.ndarray) -> list[str]:
   """Whether a receiver followed the target, which was at (T, 2)."""
   times_s, valid = trace.times_s, trace.valid
   if not valid.any():
-    return [f'sight: no target was found; it was {_place(target_px[0])}']
+    off_px = np.linalg.norm(target_px[0] - np.array(_SIZE_PX) / 2)
+    aside = (
+      ''
+      if off_px < _OFF_TARGET_PX / 2
+      else (', and is looked for around the middle')
+    )
+    return [f'sight: no target was found; it was {_place(target_px[0])}{aside}']
   out = []
   outside = ~np.array([_is_inside(each) for each in target_px])
   if outside.any():

@@ -490,12 +490,13 @@ def test_a_pause_that_is_short_for_the_null_is_told(
       np.array([-20.0, 240.0]), MIDDLE_PX, ~YES,
       (
         'sight: no target was found; it was outside of the picture, at -20, 240'
-        ' px of 640 x 480',
+        ' px of 640 x 480, and is looked for around the middle',
       ),
     ),
     (
       np.full(2, np.nan), MIDDLE_PX, ~YES,
-      ('sight: no target was found; it was behind the camera',),
+      ('sight: no target was found; it was behind the camera, and is looked'
+       ' for around the middle',),
     ),
     (
       MIDDLE_PX, MIDDLE_PX, LOST,
