@@ -49,7 +49,7 @@ def main(argv: Sequence[str]) -> int:
   """Runs the scenario of the flags and returns the exit status."""
   scene = scenario_flags.read()
   receivers.make(_RECEIVER.value, scene.codebook)
-  nulls.check(scene, _RECEIVER.value)
+  nulls.check([scene], _RECEIVER.value)
   folder = pathlib.Path(_OUTPUT.value or records.free_folder('broadcast'))
   command = provenance.command_line('broadcast', launch.given_flags())
   with records.new_folder(folder) as draft:

@@ -1,5 +1,7 @@
 """Whether the pauses of a dance hold what a receiver takes for a null."""
 
+from collections.abc import Sequence
+
 from waggle_tasks import errors, scenario
 from waggle_tasks.agents import config as config_lib
 from waggle_tasks.agents import receivers
@@ -63,16 +65,27 @@ def flaw(
   return None
 
 
-def check(scene: scenario.Scenario, receiver_name: str) -> None:
-  """Refuses to send a message that a receiver has no time to read.
+def check(scenes: Sequence[scenario.Scenario], receiver_name: str) -> str:
+  """Refuses to fly what a receiver has no time to read anywhere.
+
+  Args:
+    scenes: What is to be flown.
+    receiver_name: As `receivers.make` takes it.
+
+  Returns:
+    A note for people where only some messages cannot be read; else nothing.
 
   Raises:
     PauseError: naming the pause, what is needed, and both numbers.
   """
-  if not scene.sends_message:
-    return
-  if why := flaw(scene, receiver_name):
-    raise PauseError(
-      '`initial_hover_s`, and `settle_s` + `gap_s` + `lead_in_s`, must hold'
-      f' what the receiver takes for a null: got {why}'
-    )
+  sent = [scene for scene in scenes if scene.sends_message]
+  flaws = [why for scene in sent if (why := flaw(scene, receiver_name))]
+  if not flaws:
+    return ''
+  rule = (
+    '`initial_hover_s`, and `settle_s` + `gap_s` + `lead_in_s`, must hold what'
+    f' the receiver takes for a null: got {flaws[0]}'
+  )
+  if len(flaws) == len(sent):
+    raise PauseError(rule)
+  return f'{len(flaws)} of {len(scenes)} scenarios cannot be read: {rule}'

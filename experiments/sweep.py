@@ -22,6 +22,7 @@ from waggle_tasks.experiments import (
   envelope,
   figures,
   launch,
+  nulls,
   pool,
   provenance,
   scenario_flags,
@@ -69,6 +70,8 @@ def main(argv: Sequence[str]) -> int:
   grid = sweep_cases.grid(_GRID.value)
   cases = sweep_cases.cases(grid, scenario_flags.values(), _REPEATS.value)
   receivers.make(_RECEIVER.value, cases[0].scene.codebook)
+  if note := nulls.check([c.scene for c in cases], _RECEIVER.value):
+    print(note, file=sys.stderr)
   workers = launch.worker_count(_WORKERS)
   engine = functools.partial(pool.run, workers=workers)
   if _SCHEDULER.value is not None:

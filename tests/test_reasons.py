@@ -2,7 +2,9 @@
 
 from collections.abc import Callable, Iterator
 import dataclasses
+import json
 import math
+import pathlib
 import subprocess
 
 from dm_control import composer
@@ -136,36 +138,53 @@ def test_a_pause_must_hold_the_receivers_null(
     return scenario.Scenario(pauses=timing.Timing(**pauses))
 
   assert nulls.needed_s(receiver_name) == pytest.approx(needed_s)
-  nulls.check(scene(settle_s=needed_s, gap_s=0, lead_in_s=0), receiver_name)
+  enough = scene(settle_s=needed_s, gap_s=0, lead_in_s=0)
   short = scene(settle_s=needed_s - 0.04, gap_s=0, lead_in_s=0)
-  error = (
-    rf'got {needed_s - 0.04:.2f} s between gestures, of which a null of'
-    rf' {receiver_name} takes {needed_s:.2f} s'
+  assert not nulls.check([enough], receiver_name)
+  why = (
+    f'got {needed_s - 0.04:.2f} s between gestures, of which a null of'
+    f' {receiver_name} takes {needed_s:.2f} s'
   )
-  with pytest.raises(nulls.PauseError, match=error):
-    nulls.check(short, receiver_name)
-  nulls.check(short, f'{receiver_name}:separators=off')
-  nulls.check(short, f'{receiver_name}:hold_s=2.0')
-  nulls.check(dataclasses.replace(short, control='no_send'), receiver_name)
+  with pytest.raises(nulls.PauseError, match=why):
+    nulls.check([short, short], receiver_name)
   with pytest.raises(nulls.PauseError, match=r'got 2.50 s before START'):
-    nulls.check(scene(initial_hover_s=2.5), receiver_name)
+    nulls.check([scene(initial_hover_s=2.5)], receiver_name)
+  assert not nulls.check([short], f'{receiver_name}:separators=off')
+  assert not nulls.check([short], f'{receiver_name}:hold_s=2.0')
+  quiet = dataclasses.replace(short, control='no_send')
+  assert not nulls.check([quiet], receiver_name)
+  note = nulls.check([enough, short, quiet], receiver_name)
+  assert note.startswith('1 of 3 scenarios cannot be read: `initial_hover_s`')
+  assert note.endswith(why)
 
 
-def test_a_broadcast_that_cannot_be_read_is_refused_before_it_flies(
-  waggle: Waggle, tmp_path: object
+SHORT = ('--settle_s=0.5', '--lead_in_s=0.8')
+SUITE = [{'name': 'short', 'pauses': {'settle_s': 0.5, 'lead_in_s': 0.8}}]
+
+
+@pytest.mark.parametrize(
+  'command',
+  [
+    ('broadcast', *SHORT),
+    ('sweep', '--grid', 'distance_m=1.0,1.3', *SHORT),
+    ('suite', '--suite=mine.json'),
+  ],
+)
+def test_what_cannot_be_read_is_refused_before_it_flies(
+  command: tuple[str, ...], waggle: Waggle, tmp_path: pathlib.Path
 ) -> None:
-  flags = ('--settle_s=0.5', '--lead_in_s=0.8', '--observers=1')
-  child = waggle('broadcast', *flags, cwd=tmp_path)
+  (tmp_path / 'mine.json').write_text(json.dumps(SUITE), encoding='utf-8')
+  child = waggle(*command, cwd=tmp_path)
   assert child.returncode == 2
   (line,) = child.stderr.strip().splitlines()
   assert 'got 3.30 s between gestures, of which a null of klt takes 3.76 s' in (
     line
   )
-  assert not [*tmp_path.iterdir()]
+  assert [each.name for each in tmp_path.iterdir()] == ['mine.json']
 
 
 def test_a_codebook_that_cannot_be_flown_is_refused_in_one_line(
-  waggle: Waggle, tmp_path: object
+  waggle: Waggle, tmp_path: pathlib.Path
 ) -> None:
   child = waggle('broadcast', '--gesture_s=2', cwd=tmp_path)
   assert child.returncode == 2
