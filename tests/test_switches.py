@@ -12,7 +12,7 @@ import pytest
 
 from waggle_tasks import registry, scenario, sensor
 from waggle_tasks.protocol import timing
-from waggle_tasks.tasks import broadcast, clock, surroundings
+from waggle_tasks.tasks import clock, surroundings, switches
 
 Fixture = Callable[..., object]
 Load = Callable[..., composer.Environment]
@@ -59,7 +59,7 @@ def test_an_observable_that_nobody_has_is_refused(
   )
   vehicle.observables.velocity_mps.enabled = True
   error = f'`enabled` of {whose}/velocity_mps must be False: only observers'
-  with pytest.raises(broadcast.ObservableError, match=error):
+  with pytest.raises(switches.ObservableError, match=error):
     environment.reset()
 
 

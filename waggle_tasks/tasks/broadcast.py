@@ -1,6 +1,6 @@
 """The broadcast: one performer dances, observers read it and fly."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 import math
 
 from dm_control import composer, mjcf
@@ -8,20 +8,15 @@ from dm_control.composer.observation import observable
 from dm_env import specs
 import numpy as np
 
-from waggle_tasks import errors
 from waggle_tasks.arenas import flight_room, layouts
 from waggle_tasks.entities import controller, observer, performer
-from waggle_tasks.protocol import flight, reference, timing
-from waggle_tasks.tasks import actions, progress, safety
+from waggle_tasks.protocol import timing
+from waggle_tasks.tasks import actions, contacts, flights, safety, switches
 from waggle_tasks.tasks import clock as clock_lib
 from waggle_tasks.tasks import parts as parts_lib
 
 PHYSICS_TIMESTEP_S = 0.004
 OBSERVATIONS = ('camera', 'time_s', 'position_m')
-
-
-class ObservableError(errors.WaggleError):
-  """Something is to be observed by nobody."""
 
 
 class Broadcast(composer.Task):
@@ -129,7 +124,7 @@ class Broadcast(composer.Task):
       ClockError: if the time step is not that which was compiled.
       ObservableError: if something is to be observed that nobody can see.
     """
-    self._check_switches(physics)
+    switches.check(self, self.observers, physics)
     poses = layouts.jittered(
       [self._parts.poses[name] for name in self._vehicles],
       self._parts.jitter_m,
@@ -153,36 +148,16 @@ class Broadcast(composer.Task):
 
   def _begin_flights(self) -> None:
     """Lets every observer wait at its place."""
-    displacement_m = self._parts.message.displacement_m(self._parts.units)
-    self._gates, self._progress = [], []
-    self._requests: dict[str, flight.Flight] = {}
-    for name in self._observers:
-      home_m = np.array(self._homes[name].position_m)
-      hold = reference.Reference.hover(home_m)
-      self._gates.append(safety.Gate(name, hold))
-      goal_m = flight.goal_m(home_m, displacement_m)
-      target_m = goal_m if self.sends_message else None
-      self._progress.append(progress.Progress(home_m, target_m))
+    displacement_m = None
+    if self.sends_message:
+      displacement_m = self._parts.message.displacement_m(self._parts.units)
+    self._flights = flights.Flights(
+      {n: np.array(self._homes[n].position_m) for n in self._observers},
+      displacement_m,
+      self._parts.minimum_spacing_m,
+    )
     self._rewards = [0.0] * len(self._observers)
     self._contacts: tuple[tuple[str, str], ...] = ()
-
-  def _check_switches(self, physics: mjcf.Physics) -> None:
-    """Refuses what was switched on and would have no effect."""
-    if physics.timestep() != self.physics_timestep:
-      raise clock_lib.ClockError(
-        '`physics_timestep` must be set before the first reset, which compiles'
-        f' it: {physics.timestep():g} s is compiled, {self.physics_timestep:g}'
-        ' s was asked for; `load` another environment'
-      )
-    for entity in self.root_entity.iter_entities():
-      if entity in self._observers.values():
-        continue
-      for name, each in entity.observables.as_dict().items():
-        if each.enabled:
-          raise ObservableError(
-            f'`enabled` of {name} must be False: only observers have'
-            f' observations, {", ".join(self._observers)}'
-          )
 
   def _begin_dance(self) -> None:
     """Tells the performer what to fly in this episode."""
@@ -222,7 +197,7 @@ class Broadcast(composer.Task):
       ClockError: if the physics was set to a state that cannot be flown on.
     """
     del random_state
-    if self._clock.follow(physics):
+    if self._clock.was_set(physics):
       self._replay(physics)
     time_s, middle_s = self._clock.time_s, self._clock.middle_s
     home = self._homes['performer']
@@ -231,19 +206,16 @@ class Broadcast(composer.Task):
     )
     self._command(physics, 'performer', motion)
     wanted = actions.read(action, [*self._observers])
-    self._judge(wanted, self.positions_m(physics), time_s)
-    for gate, each in zip(self._gates, wanted, strict=True):
-      followed = gate.follow(each, time_s)
-      motion = (
-        followed.position_m,
-        followed.velocity_mps,
-        followed.acceleration_mps2,
-      )
-      self._command(physics, gate.name, motion, followed.turn_rad)
+    followed = self._flights.follow(
+      wanted, self.positions_m(physics), self.drifts_m(), time_s
+    )
+    for name, each in followed.items():
+      motion = each.position_m, each.velocity_mps, each.acceleration_mps2
+      self._command(physics, name, motion, each.turn_rad)
 
   def _replay(self, physics: mjcf.Physics) -> None:
     """Goes on from a time that the physics was set to."""
-    if self._requests or any(g.plan or g.refusal for g in self._gates):
+    if self._flights.begun:
       raise clock_lib.ClockError(
         '`time` must not be set once an observer was given its command:'
         ' `reset` and play the actions again'
@@ -253,6 +225,7 @@ class Broadcast(composer.Task):
         '`time` must not be set where a sensor spoils images, as it draws on'
         ' and on: `load` again with the same seed and play the actions again'
       )
+    self._clock.set(physics)
     self._begin_flights()
     physics.forward()
 
@@ -268,73 +241,21 @@ class Broadcast(composer.Task):
     moved = [each + off[:3] for each, off in zip(motion, drift, strict=True)]
     self._controllers[name].command(physics, *moved, turn_rad + drift[0][3])
 
-  def _judge(
-    self,
-    wanted: Sequence[reference.Reference],
-    positions_m: Mapping[str, np.ndarray],
-    time_s: float,
-  ) -> None:
-    """Accepts or refuses the commands that have waited for others."""
-    for gate, each in zip(self._gates, wanted, strict=True):
-      plan = gate.request(each, positions_m[gate.name], time_s)
-      if plan is not None:
-        self._requests.setdefault(gate.name, plan)
-    if not self._requests:
-      return
-    due = {
-      name: plan
-      for name, plan in self._requests.items()
-      if safety.is_due(plan, time_s)
-    }
-    plans = {gate.name: gate.plan for gate in self._gates if gate.plan}
-    others = {**positions_m, **plans, **self._requests}
-    reasons = safety.refuse(
-      due, others, positions_m, self._parts.minimum_spacing_m
-    )
-    drifts_m = self.drifts_m()
-    for gate, each in zip(self._gates, self._progress, strict=True):
-      if gate.name in due:
-        gate.judge(self._requests.pop(gate.name), reasons.get(gate.name))
-        # A displacement counts from where it was read, drift and all; its
-        # height is the agreed one.
-        each.shift(drifts_m[gate.name] * (1.0, 1.0, 0.0))
-
   def after_step(
     self, physics: mjcf.Physics, random_state: np.random.RandomState
   ) -> None:
     """Takes stock of the step."""
     del random_state
     self._clock.tick(physics)
-    self._contacts = self._find_contacts(physics)
+    self._contacts = contacts.find(physics)
+    drifts = self._drifts()
     positions_m = self.positions_m(physics)
     velocities_mps = self.velocities_mps(physics)
-    drifts = self._drifts()
-    authorised = (
-      self.sends_message and self._clock.time_s >= self.performer.end_s
+    self._rewards = self._flights.update(
+      {name: positions_m[name] - off[0] for name, off in drifts.items()},
+      {name: velocities_mps[name] - off[1] for name, off in drifts.items()},
+      self.sends_message and self._clock.time_s >= self.performer.end_s,
     )
-    self._rewards = [
-      each.update(
-        positions_m[name] - drifts[name][0],
-        velocities_mps[name] - drifts[name][1],
-        authorised,
-      )
-      for name, each in zip(self._observers, self._progress, strict=True)
-    ]
-
-  def _find_contacts(
-    self, physics: mjcf.Physics
-  ) -> tuple[tuple[str, str], ...]:
-    if not physics.data.ncon:
-      return ()
-    model, pairs = physics.model, set()
-    for contact in physics.data.contact[: physics.data.ncon]:
-      names = [
-        model.id2name(model.geom_bodyid[geom], 'body').split('/')[0]
-        for geom in (contact.geom1, contact.geom2)
-      ]
-      named = ('room' if name == 'world' else name for name in names)
-      pairs.add(tuple(sorted(named)))
-    return tuple(sorted(pairs))
 
   def positions_m(self, physics: mjcf.Physics) -> dict[str, np.ndarray]:
     """True position of every vehicle, (3,) world metres, by its name."""
@@ -369,7 +290,7 @@ class Broadcast(composer.Task):
   @property
   def refusals(self) -> tuple[safety.Refusal, ...]:
     """The commands that the safety checks refused in this episode."""
-    return tuple(gate.refusal for gate in self._gates if gate.refusal)
+    return self._flights.refusals
 
   def get_reward(self, physics: mjcf.Physics) -> list[float]:
     """One reward for each observer, see the class."""
@@ -387,7 +308,7 @@ class Broadcast(composer.Task):
     return (
       bool(self._contacts)
       or self._clock.frame >= timing.frames(self._parts.duration_s)
-      or all(each.done for each in self._progress)
+      or self._flights.done
     )
 
   def action_spec(self, physics: mjcf.Physics) -> list[specs.BoundedArray]:

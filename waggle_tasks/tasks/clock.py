@@ -72,24 +72,27 @@ class Clock:
     self.frame += 1
     self._note(physics)
 
-  def follow(self, physics: mjcf.Physics) -> bool:
-    """Takes the time of the physics before a control step.
+  def set(self, physics: mjcf.Physics) -> None:
+    """Takes the time that the physics was set to."""
+    self.frame = timing.frames(physics.time())
+    self._note(physics)
+
+  def was_set(self, physics: mjcf.Physics) -> bool:
+    """Looks at the physics before a control step.
 
     Returns:
-      Whether it was set to another frame.
+      Whether it was set to the time of another frame.
 
     Raises:
       ClockError: if it is no frame's, or if the state was set without it.
     """
     time_s = physics.time()
-    frame = timing.frames(time_s)
-    if abs(time_s - frame * timing.FRAME_S) > _SAME:
+    if abs(time_s - timing.frames(time_s) * timing.FRAME_S) > _SAME:
       raise ClockError(
         f'`time` of the physics must be a whole number of frames of'
         f' {timing.FRAME_S:g} s when the environment steps: got {time_s:g} s'
       )
-    if frame != self.frame:
-      self.frame = frame
+    if timing.frames(time_s) != self.frame:
       return True
     if np.abs(_state(physics) - self._state).max() > _SAME:
       raise ClockError(
