@@ -83,7 +83,11 @@ class ObserverAgent:
 
     Returns:
       (13,) see `reference.Reference`.
+
+    Raises:
+      ObservationError: if one of them is missing, or no number.
     """
+    _check(observation, 'this agent')
     time_s = float(observation['time_s'])
     if time_s <= self._time_s:
       return self._action
@@ -170,25 +174,35 @@ class Team:
         f' got {len(observations)}'
       )
     for number, observation in enumerate(observations, 1):
-      _check(number, observation)
+      _check(observation, f'agent {number}')
     return [
       agent.step(observation)
       for agent, observation in zip(self.agents, observations, strict=True)
     ]
 
 
-def _check(number: int, observation: Mapping[str, np.ndarray]) -> None:
-  """Refuses an observation, of the agent of a number, that lacks something."""
+def _check(observation: Mapping[str, np.ndarray], whose: str) -> None:
+  """Refuses what is no observation, or lacks something.
+
+  Args:
+    observation: What an agent is to take.
+    whose: The agent, as the error names it.
+
+  Raises:
+    ObservationError: naming the agent, and what it needs and lacks.
+  """
   is_one = isinstance(observation, Mapping)
   missing = [name for name in SIGHTS if not is_one or name not in observation]
   if missing:
     raise ObservationError(
-      f'`observations` must each hold {", ".join(SIGHTS)}: that of agent'
-      f' {number} lacks {", ".join(missing)}'
+      f'an observation must hold {", ".join(SIGHTS)}: that of {whose} lacks'
+      f' {", ".join(missing)}'
     )
-  position_m = np.asarray(observation['position_m'])
-  if position_m.shape != (3,) or not np.isfinite(position_m).all():
-    raise ObservationError(
-      f'`position_m` of agent {number} must be 3 finite numbers:'
-      f' got {position_m}'
-    )
+  for name, size in (('time_s', 1), ('position_m', 3)):
+    value = np.asarray(observation[name])
+    is_number = value.size == size and value.dtype.kind in 'iuf'
+    if not is_number or not np.isfinite(value).all():
+      word = 'a finite number' if size == 1 else f'{size} finite numbers'
+      raise ObservationError(
+        f'`{name}` of {whose} must be {word}: got {observation[name]!r}'
+      )

@@ -211,6 +211,14 @@ def test_a_team_of_an_unknown_receiver_is_refused() -> None:
     (lambda o: ['camera', o[1]], 'agent 1 lacks camera, time_s, position_m'),
     (lambda o: [o[0], {**o[1], 'position_m': [0, 1]}], 'agent 2 must be 3 fin'),
     (
+      lambda o: [o[0], {**o[1], 'time_s': np.nan}],
+      'of agent 2 must be a finite',
+    ),
+    (
+      lambda o: [o[0], {**o[1], 'time_s': None}],
+      'agent 2 must be a finite num',
+    ),
+    (
       lambda o: [o[0], {**o[1], 'position_m': [0, 1, np.nan]}],
       '`position_m` of agent 2 must be 3 finite numbers',
     ),
@@ -257,3 +265,13 @@ def test_an_image_that_its_receiver_refuses_was_never_taken() -> None:
   clean = run(GREY, GREY)
   spoilt = run(GREY, GREY[:0], GREY)
   assert (spoilt.images, spoilt.provenance) == (clean.images, clean.provenance)
+
+
+def test_an_agent_alone_refuses_what_is_no_observation() -> None:
+  script = Script()
+  agent = agent_of(script)
+  with pytest.raises(
+    observer_agent.ObservationError, match='that of this agent lacks camera'
+  ):
+    agent.step({'time_s': 0.0, 'position_m': HOME_M})
+  assert script.times_s == []
