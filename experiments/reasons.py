@@ -21,6 +21,8 @@ from waggle_tasks.protocol import schedule, timing
 _OFF_PATH_M = 0.02
 # A track may wander about the target, which is wider than this when it is near.
 _OFF_TARGET_PX = 40.0
+# Half the square in which the paper's receiver finds it, and less.
+_ASIDE_PX = 20.0
 # Receivers pass over shorter losses.
 _LOSS_S = 0.4
 # A pause that has less to spare may have been too short.
@@ -113,13 +115,10 @@ def _sight(trace: traces_lib.Trace, target_px: np.ndarray) -> list[str]:
   """Whether a receiver followed the target, which was at (T, 2)."""
   times_s, valid = trace.times_s, trace.valid
   if not valid.any():
-    off_px = np.linalg.norm(target_px[0] - np.array(_SIZE_PX) / 2)
-    aside = (
-      ''
-      if off_px < _OFF_TARGET_PX / 2
-      else (', and is looked for around the middle')
-    )
-    return [f'sight: no target was found; it was {_place(target_px[0])}{aside}']
+    return [
+      f'sight: no target was found; it was {_place(target_px[0])}'
+      f'{_aside(target_px[0])}'
+    ]
   out = []
   outside = ~np.array([_is_inside(each) for each in target_px])
   if outside.any():
@@ -175,3 +174,11 @@ def _place(target_px: np.ndarray) -> str:
   (x_px, y_px), (width_px, height_px) = target_px, _SIZE_PX
   outside = '' if _is_inside(target_px) else 'outside of the picture, '
   return f'{outside}at {x_px:.0f}, {y_px:.0f} px of {width_px} x {height_px}'
+
+
+def _aside(target_px: np.ndarray) -> str:
+  """A word where a place, (2,), is not where a target is looked for."""
+  off_px = np.linalg.norm(target_px - np.array(_SIZE_PX) / 2)
+  if off_px < _ASIDE_PX:
+    return ''
+  return ', and is looked for around the middle'
