@@ -12,7 +12,7 @@ import pytest
 
 from waggle_tasks import registry, scenario, sensor
 from waggle_tasks.protocol import timing
-from waggle_tasks.tasks import clock, surroundings, switches
+from waggle_tasks.tasks import clock, copies, surroundings, switches
 
 Fixture = Callable[..., object]
 Load = Callable[..., composer.Environment]
@@ -247,11 +247,12 @@ def test_an_environment_says_that_it_cannot_be_copied(
   copied: Callable[[object], object], load: Load
 ) -> None:
   environment = load(cameras=False, observers=1)
-  with pytest.raises(registry.CopyError, match='copy or pickle its `Scenario`'):
+  with pytest.raises(copies.CopyError, match='copy or pickle its `Scenario`'):
     copied(environment)
   environment.reset()
-  with pytest.raises(registry.CopyError, match='cannot be copied or pickled'):
-    copied(environment)
+  for each in (environment, environment.task):
+    with pytest.raises(copies.CopyError, match='cannot be copied or pickled'):
+      copied(each)
 
 
 @pytest.mark.parametrize('name', registry.SCENARIOS)

@@ -4,35 +4,18 @@ import dataclasses
 
 from dm_control import composer
 
-from waggle_tasks import errors
 from waggle_tasks import scenario as scenario_lib
 from waggle_tasks.arenas import flight_room
 from waggle_tasks.entities import observer, performer
 from waggle_tasks.protocol import checks, decoys
-from waggle_tasks.tasks import broadcast, controls
+from waggle_tasks.tasks import broadcast, controls, copies
 from waggle_tasks.tasks import parts as parts_lib
 
 Scenario = scenario_lib.Scenario
 
 
-class CopyError(errors.WaggleError):
-  """A copy of what cannot be copied."""
-
-
-class Environment(composer.Environment):
+class Environment(copies.Uncopied, composer.Environment):
   """A composer environment that says why it cannot be copied."""
-
-  def __reduce_ex__(self, protocol: int) -> tuple:
-    """Refuses to be copied or pickled.
-
-    Raises:
-      CopyError: always.
-    """
-    raise CopyError(
-      'an environment holds a running simulation and cannot be copied or'
-      ' pickled: copy or pickle its `Scenario` and make another one of it, with'
-      ' `waggle_tasks.load` or `waggle_tasks.registry.environment`'
-    )
 
 
 SCENARIOS = {

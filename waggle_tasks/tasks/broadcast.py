@@ -11,7 +11,14 @@ import numpy as np
 from waggle_tasks.arenas import flight_room, layouts
 from waggle_tasks.entities import controller, observer, performer
 from waggle_tasks.protocol import timing
-from waggle_tasks.tasks import actions, contacts, flights, safety, switches
+from waggle_tasks.tasks import (
+  actions,
+  contacts,
+  copies,
+  flights,
+  safety,
+  switches,
+)
 from waggle_tasks.tasks import clock as clock_lib
 from waggle_tasks.tasks import parts as parts_lib
 
@@ -19,7 +26,7 @@ PHYSICS_TIMESTEP_S = 0.004
 OBSERVATIONS = ('camera', 'time_s', 'position_m')
 
 
-class Broadcast(composer.Task):
+class Broadcast(copies.Uncopied, composer.Task):
   """Observers see a dance, each through its own eye, and fly its message.
 
   Observations are a list of dicts, one for each observer: `camera`
