@@ -28,7 +28,7 @@ _LOSS_S = 0.4
 # A pause that has less to spare may have been too short.
 _SPARE_S = 0.2
 # Gestures are flown in a plane, which is a line from the side.
-_WIDEST_DEG = 85.0
+_WIDEST_DEG, _ROUNDING_DEG = 85.0, 1e-6
 _SIZE_PX = (renderer.WIDTH, renderer.HEIGHT)
 
 
@@ -102,7 +102,7 @@ def _view(scene: scenario.Scenario, name: str) -> list[str]:
   """Whether a dance was watched from where its plane is not to be seen."""
   x_m, y_m, _ = scene.poses()[name].position_m
   angle_deg = abs(math.degrees(math.atan2(x_m, -y_m)))
-  if angle_deg <= _WIDEST_DEG:
+  if angle_deg <= _WIDEST_DEG + _ROUNDING_DEG:
     return []
   where = 'from behind' if angle_deg > 180 - _WIDEST_DEG else 'edge-on'
   return [
@@ -173,7 +173,9 @@ def _place(target_px: np.ndarray) -> str:
     return 'behind the camera'
   (x_px, y_px), (width_px, height_px) = target_px, _SIZE_PX
   outside = '' if _is_inside(target_px) else 'outside of the picture, '
-  return f'{outside}at {x_px:.0f}, {y_px:.0f} px of {width_px} x {height_px}'
+  # Rounded to an int, as a float can be -0.
+  place = f'at {round(x_px)}, {round(y_px)} px of {width_px} x {height_px}'
+  return f'{outside}{place}'
 
 
 def _aside(target_px: np.ndarray) -> str:

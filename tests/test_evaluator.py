@@ -535,7 +535,7 @@ def test_what_was_seen_of_the_target_is_told(
 
 @pytest.mark.parametrize(
   ('bearing_deg', 'said'),
-  [(80.0, None), (90.0, '90 degrees from the front, edge-on'),
+  [(85.0, None), (90.0, '90 degrees from the front, edge-on'),
    (144.0, '144 degrees from the front, from behind')],
 )  # fmt: skip
 def test_a_view_from_behind_is_told(
