@@ -22,11 +22,11 @@ class _Numbers:
     for field in dataclasses.fields(self):
       value = getattr(self, field.name)
       if field.type is bool:
-        checks.switch(field.name, value, ReceiverError)
-        continue
-      low, high = _LIMITS.get(field.name, (0, 1e6))
-      check = checks.integer if field.type is int else checks.number
-      check(field.name, value, low, high, ReceiverError)
+        plain = checks.switch(field.name, value, ReceiverError)
+        checks.settle(self, field.name, plain)
+      else:
+        bounds = {field.name: _LIMITS.get(field.name, (0, 1e6))}
+        checks.settle_numbers(self, bounds, ReceiverError)
 
 
 # Smallest and largest value that the tracker can work with.
@@ -102,7 +102,7 @@ class Differencing:
     gate_widths: Half the side of the square around the target in which it is
       looked for, in apparent widths...
     gate_px: ...and so many pixels more.
-    middle_px: How far from the middle a target may hover...
+    middle_px: How far to a side of the middle a target may hover...
     middle_widths: ...or so many apparent widths.
     lost_share: Smallest share of the hovering target's difference.
     most_share: Largest share of it: a target that comes close grows.

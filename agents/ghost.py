@@ -7,7 +7,6 @@ rest, how large it is, and what is behind it.
 """
 
 import dataclasses
-import math
 
 import numpy as np
 
@@ -98,10 +97,11 @@ class Separation:
     if min(rest, motion) <= _MIN_BALANCE * max(rest, motion):
       return None
     found = self._ghost(blobs.only(home))
-    away_px = math.hypot(*(found.anchor_px - middle_px))
+    # Others hover beside a target: above or below is the wash of its rotors.
+    aside_px = abs(found.anchor_px[0] - middle_px[0])
     config, width_px = self._config, found.width_px
     reach_px = max(config.middle_px, config.middle_widths * width_px)
-    return found if width_px >= _MIN_WIDTH_PX and away_px <= reach_px else None
+    return found if width_px >= _MIN_WIDTH_PX and aside_px <= reach_px else None
 
   def _ghost(self, weights: np.ndarray) -> Ghost:
     total, anchor_px = difference.centroid(weights, (0, 0))

@@ -74,8 +74,8 @@ class Navigator:
         f'`payload` {command.payload.bits} must be the only one in an episode:'
         ' one was accepted before'
       )
-    goal_m = position_m + command.payload.displacement_m(self._units)
-    goal_m[2] = flight.HOVER_HEIGHT_M
+    displacement_m = command.payload.displacement_m(self._units)
+    goal_m = flight.goal_m(position_m, displacement_m)
     self._flight = flight.Flight(position_m.copy(), goal_m, time_s)
 
   def step(self, position_m: np.ndarray, time_s: float) -> reference.Reference:

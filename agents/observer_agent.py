@@ -7,10 +7,17 @@ import math
 
 import numpy as np
 
+from waggle_tasks import errors
 from waggle_tasks.agents import navigator as navigator_lib
 from waggle_tasks.agents import provenance, receiver, receivers
 from waggle_tasks.protocol import agreement as agreement_lib
 from waggle_tasks.protocol import payload
+
+SIGHTS = ('camera', 'time_s', 'position_m')
+
+
+class ObservationError(errors.WaggleError):
+  """Observations that are not one for each agent, or lack what it needs."""
 
 
 class Deed(enum.StrEnum):
@@ -77,14 +84,18 @@ class ObserverAgent:
 
     Returns:
       (13,) see `reference.Reference`.
+
+    Raises:
+      ObservationError: if one of them is missing, or no number.
     """
+    _check(observation, 'this agent')
     time_s = float(observation['time_s'])
     if time_s <= self._time_s:
       return self._action
-    self._time_s = time_s
     position_m = np.asarray(observation['position_m'])
     if self._navigator.target_m is None:  # Navigating, it reads no more.
       self._read(observation['camera'], position_m, time_s)
+    self._time_s = time_s
     wanted = self._navigator.step(position_m, time_s)
     if self._navigator.arrival_s == time_s:
       self._note(Deed.ARRIVAL, time_s)
@@ -94,8 +105,9 @@ class ObserverAgent:
   def _read(
     self, image: np.ndarray, position_m: np.ndarray, time_s: float
   ) -> None:
+    events = self.receiver.step(image, time_s)  # It may refuse the image.
     self._chain.add(image, time_s)
-    for event in self.receiver.step(image, time_s):
+    for event in events:
       self.events.append(event)
       if event.message is not None:
         self._command = navigator_lib.Command(event.message, self._chain.digest)
@@ -149,8 +161,47 @@ class Team:
   def step(
     self, observations: Sequence[Mapping[str, np.ndarray]]
   ) -> list[np.ndarray]:
-    """Takes one observation for each agent and returns their actions."""
+    """Takes one observation for each agent and returns their actions.
+
+    Raises:
+      ObservationError: if there is not one for each agent, or one lacks what
+        an agent needs; no agent has taken anything then.
+    """
+    if len(observations) != len(self.agents):
+      raise ObservationError(
+        f'`observations` must be one for each of {len(self.agents)} agents:'
+        f' got {len(observations)}'
+      )
+    for number, observation in enumerate(observations, 1):
+      _check(observation, f'agent {number}')
     return [
       agent.step(observation)
       for agent, observation in zip(self.agents, observations, strict=True)
     ]
+
+
+def _check(observation: Mapping[str, np.ndarray], whose: str) -> None:
+  """Refuses what is no observation, or lacks something.
+
+  Args:
+    observation: What an agent is to take.
+    whose: The agent, as the error names it.
+
+  Raises:
+    ObservationError: naming the agent, and what it needs and lacks.
+  """
+  is_one = isinstance(observation, Mapping)
+  missing = [name for name in SIGHTS if not is_one or name not in observation]
+  if missing:
+    raise ObservationError(
+      f'an observation must hold {", ".join(SIGHTS)}: that of {whose} lacks'
+      f' {", ".join(missing)}'
+    )
+  for name, size in (('time_s', 1), ('position_m', 3)):
+    value = np.asarray(observation[name])
+    is_number = value.size == size and value.dtype.kind in 'iuf'
+    if not is_number or not np.isfinite(value).all():
+      word = 'a finite number' if size == 1 else f'{size} finite numbers'
+      raise ObservationError(
+        f'`{name}` of {whose} must be {word}: got {observation[name]!r}'
+      )

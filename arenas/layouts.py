@@ -19,7 +19,7 @@ from waggle_tasks import errors
 from waggle_tasks.protocol import checks, flight
 
 HOVER_HEIGHT_M = flight.HOVER_HEIGHT_M
-_MIN_DISTANCE_M, _MAX_DISTANCE_M = 0.001, 100.0
+_DISTANCE_M = (0.001, 100.0)  # Smallest and largest.
 
 
 class LayoutError(errors.WaggleError):
@@ -44,11 +44,9 @@ class Pose:
       raise LayoutError(
         f'`position_m` must be 3 finite numbers: got {position_m}'
       )
-    if not math.isfinite(self.yaw_rad):
-      raise LayoutError(
-        f'`yaw_rad` must be a finite number: got {self.yaw_rad!r}'
-      )
-    object.__setattr__(self, 'position_m', position_m)
+    checks.settle(self, 'position_m', position_m)
+    endless = -math.inf, math.inf
+    checks.settle_numbers(self, {'yaw_rad': endless}, LayoutError)
 
 
 class Layout(Protocol):
@@ -76,11 +74,12 @@ class Arc:
   bearing_rad: float = 0.0
 
   def __post_init__(self) -> None:
-    _check_distance('radius_m', self.radius_m)
-    checks.number('half_span_rad', self.half_span_rad, 0, math.pi, LayoutError)
-    checks.number(
-      'bearing_rad', self.bearing_rad, -math.pi, math.pi, LayoutError
-    )
+    limits = {
+      'radius_m': _DISTANCE_M,
+      'half_span_rad': (0, math.pi),
+      'bearing_rad': (-math.pi, math.pi),
+    }
+    checks.settle_numbers(self, limits, LayoutError)
 
   def poses(self, count: int) -> tuple[Pose, ...]:
     """The poses of `count` observers, see the class."""
@@ -106,8 +105,8 @@ class Line:
   spacing_m: float = 0.6
 
   def __post_init__(self) -> None:
-    _check_distance('separation_m', self.separation_m)
-    _check_distance('spacing_m', self.spacing_m)
+    limits = {'separation_m': _DISTANCE_M, 'spacing_m': _DISTANCE_M}
+    checks.settle_numbers(self, limits, LayoutError)
 
   def poses(self, count: int) -> tuple[Pose, ...]:
     """The poses of `count` observers, see the class."""
@@ -140,7 +139,7 @@ def spread(count: int) -> np.ndarray:
   Raises:
     LayoutError: if there is no vehicle.
   """
-  checks.integer('count', count, 1, sys.maxsize, LayoutError)
+  count = checks.integer('count', count, 1, sys.maxsize, LayoutError)
   return np.linspace(-1.0, 1.0, count) if count > 1 else np.zeros(1)
 
 
@@ -160,7 +159,7 @@ def jittered(
   Raises:
     LayoutError: if the bound is negative or not finite.
   """
-  checks.number('bound_m', bound_m, 0, _MAX_DISTANCE_M, LayoutError)
+  bound_m = checks.number('bound_m', bound_m, 0, _DISTANCE_M[1], LayoutError)
   offsets_m = np.zeros((len(poses), 3))  # (N, 3)
   offsets_m[:, :2] = rng.uniform(-bound_m, bound_m, (len(poses), 2))
   return tuple(
@@ -186,7 +185,3 @@ def check_spacing(poses: Mapping[str, Pose], minimum_m: float) -> None:
         f'{one} and {other} must start at least {minimum_m:.3f} m apart:'
         f' got {distance_m:.3f} m'
       )
-
-
-def _check_distance(field: str, value: float) -> None:
-  checks.number(field, value, _MIN_DISTANCE_M, _MAX_DISTANCE_M, LayoutError)

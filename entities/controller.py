@@ -20,8 +20,8 @@ _POSITION_RAD_S = 10.0
 _ATTITUDE_RAD_S = 25.0
 # Menagerie's thrust range; sideways, the force of the stock firmware's 20
 # degree tilt limit (3.57 m/s^2).
-_THRUST_N = (0.0, 0.35)
-_SIDEWAYS_N = (-0.0964, 0.0964)
+THRUST_N = (0.0, 0.35)
+SIDEWAYS_N = (-0.0964, 0.0964)
 _TORQUE_NM = (-5e-3, 5e-3)
 _LIFT_MPS2 = np.array([0.0, 0.0, 9.81])
 
@@ -57,7 +57,7 @@ class Controller:
       'site', name='world', group=3
     )
     self._actuators = []
-    forces = (_SIDEWAYS_N, _SIDEWAYS_N, _THRUST_N)
+    forces = (SIDEWAYS_N, SIDEWAYS_N, THRUST_N)
     for axis, limits in enumerate(forces):
       self._add(
         root,

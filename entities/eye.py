@@ -6,6 +6,7 @@ import weakref
 from dm_control import mjcf
 from dm_control.composer.observation import observable
 from dm_env import specs
+import mujoco
 import numpy as np
 
 from waggle_tasks.entities import renderer
@@ -14,7 +15,9 @@ FOVY_DEG = 60.0  # Paper, section 'Scene, sensors, and information boundaries'.
 # Ahead of the centre of mass, clear of the airframe.
 OFFSET_M = 0.03
 
-Corruptor = Callable[[np.ndarray, np.random.RandomState], np.ndarray]
+# Takes the renderer's own picture, which it must not write to, and returns what
+# comes of it.
+Spoil = Callable[[np.ndarray], np.ndarray]
 
 # One renderer, and so one scene and set of buffers, for each live Physics.
 _RENDERERS: weakref.WeakKeyDictionary = weakref.WeakKeyDictionary()
@@ -52,26 +55,29 @@ class EyeCamera(observable.Observable):
     self,
     camera: mjcf.Element,
     incremental: bool = True,
-    corruptor: Corruptor | None = None,
+    spoil: Spoil = lambda picture: picture,
   ) -> None:
     """Makes the observable.
+
+    Its `corruptor` is free for a user's own: it takes a copy of each image as
+    it comes, and the environment's random state, and returns what the observer
+    gets instead.
 
     Args:
       camera: The MJCF camera.
       incremental: Whether to redraw only what changed.
-      corruptor: Takes a copy of each image and the environment's random
-        state, and returns what the observer gets instead; may be set anew
-        before each reset.
+      spoil: What happens to pictures on their way.
     """
     super().__init__(
       update_interval=1,
       buffer_size=1,
       delay=None,
       aggregator=None,
-      corruptor=corruptor,
+      corruptor=None,
     )
     self._camera = camera
     self._incremental = incremental
+    self._spoil = spoil
 
   @property
   def array_spec(self) -> specs.BoundedArray:
@@ -101,7 +107,14 @@ class EyeCamera(observable.Observable):
   def _callable(self, physics: mjcf.Physics) -> Callable[[], np.ndarray]:
     eyes = _renderer(physics)
     camera_id = physics.bind(self._camera).element_id
-    # The corruptor may write to what it gets; the picture is kept for later.
-    if self.corruptor:
-      return lambda: eyes.image(camera_id, self._incremental).copy()
-    return lambda: eyes.image(camera_id, self._incremental)
+    model, data = physics.model.ptr, physics.data.ptr
+
+    def take() -> np.ndarray:
+      # A state that was just set shows, though nothing followed from it yet.
+      mujoco.mj_kinematics(model, data)
+      mujoco.mj_camlight(model, data)
+      image = self._spoil(eyes.image(camera_id, self._incremental))
+      # A corruptor may write to what it gets; the picture is kept for later.
+      return image.copy() if self.corruptor else image
+
+    return take

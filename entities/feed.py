@@ -30,8 +30,8 @@ class _Message:
 class Feed:
   """The images and times of one observer in one episode.
 
-  `image` and `time_s` are composer corruptors of two observables. Both speak
-  of the message that `advance` chose for the frame, so that they agree.
+  `image` and `time_s` are of the message that `advance` chose for the frame, so
+  that they agree.
   """
 
   def __init__(
@@ -80,15 +80,11 @@ class Feed:
     if self._delivered is None or not drops:
       self._delivered = self._sent[0]
 
-  def image(
-    self,
-    image: np.ndarray,  # (480, 640, 3) uint8
-    random_state: np.random.RandomState,
-  ) -> np.ndarray:
+  def image(self, picture: np.ndarray) -> np.ndarray:  # (480, 640, 3) uint8
     """Takes this frame's picture and returns the one that comes."""
-    del random_state
     if self._exposed_frame < self._frame:  # Composer may ask again.
       self._exposed_frame = self._frame
+      image = picture.copy()
       self._light(image, self._frame)
       self._blur(image)
       if self._taken.pixels is None:
@@ -96,11 +92,9 @@ class Feed:
         self._taken.pixels = image
     return self._delivered.picture.pixels
 
-  def time_s(
-    self, time_s: np.ndarray, random_state: np.random.RandomState
-  ) -> np.ndarray:
-    """The time of the image that comes in this frame, ()."""
-    del time_s, random_state
+  @property
+  def time_s(self) -> float:
+    """The time of the image that comes in this frame."""
     return self._delivered.time_s
 
   def _read_out(self, image: np.ndarray) -> None:

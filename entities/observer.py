@@ -58,11 +58,9 @@ class Observer(crazyflie.Crazyflie):
     self, physics: mjcf.Physics, random_state: np.random.RandomState
   ) -> None:
     """Begins this episode's feed, if anything is to be spoilt."""
-    camera, time_s = self.observables.camera, self.observables.time_s
-    self._feed = camera.corruptor = time_s.corruptor = None
+    self._feed = None
     if not self.sensor.is_clean:
       self._feed = feed.Feed(self.sensor, random_state)
-      camera.corruptor, time_s.corruptor = self._feed.image, self._feed.time_s
       self._feed.advance(_time_s(physics))
 
   def after_step(
@@ -72,6 +70,21 @@ class Observer(crazyflie.Crazyflie):
     del random_state
     if self._feed is not None:
       self._feed.advance(_time_s(physics))
+
+  @property
+  def is_spoilt(self) -> bool:
+    """Whether something spoils its images in this episode."""
+    return self._feed is not None
+
+  def spoil(self, picture: np.ndarray) -> np.ndarray:
+    """What comes of the eye's picture now, (480, 640, 3) uint8 each."""
+    return picture if self._feed is None else self._feed.image(picture)
+
+  def image_time_s(self, physics: mjcf.Physics) -> np.ndarray:
+    """The time, (), that the image that comes now is told to be of."""
+    if self._feed is None:
+      return _time_s(physics)
+    return np.asarray(self._feed.time_s)
 
 
 def _time_s(physics: mjcf.Physics) -> np.ndarray:
@@ -85,9 +98,10 @@ class ObserverObservables(crazyflie.CrazyflieObservables):
   @composer.observable
   def camera(self) -> eye.EyeCamera:
     """Image of the eye: (480, 640, 3) uint8 RGB."""
-    return eye.EyeCamera(self._entity.eye, self._entity.incremental)
+    entity = self._entity
+    return eye.EyeCamera(entity.eye, entity.incremental, entity.spoil)
 
   @composer.observable
   def time_s(self) -> observable.Generic:
     """Simulation time of the image: () float64, seconds."""
-    return observable.Generic(_time_s)
+    return observable.Generic(self._entity.image_time_s)

@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from waggle_tasks.entities import crazyflie
-from waggle_tasks.protocol import minimum_jerk
+from waggle_tasks.protocol import limits, minimum_jerk
 from waggle_tasks.protocol import schedule as schedule_lib
 
 BRAKE_S = 0.8  # To rest from anywhere in a gesture; under 2 m/s^2.
@@ -25,7 +25,12 @@ class Performer(crazyflie.Crazyflie):
     return self._schedule
 
   def perform(self, schedule: schedule_lib.Schedule) -> None:
-    """Takes a new schedule, from simulation time zero."""
+    """Takes a new schedule, from simulation time zero.
+
+    Raises:
+      limits.LimitError: if it cannot be flown.
+    """
+    limits.check_schedule(schedule)
     self._schedule = schedule
     self._stop_s = math.inf
 
@@ -64,7 +69,5 @@ class Performer(crazyflie.Crazyflie):
       offset, velocity, acceleration = minimum_jerk.to_rest(
         offset, velocity, acceleration, time_s - self._stop_s, BRAKE_S
       )
-    right = np.array([-math.sin(yaw_rad), math.cos(yaw_rad), 0.0])
-    away = np.array([-math.cos(yaw_rad), -math.sin(yaw_rad), 0.0])
-    axes = np.stack([right, [0.0, 0.0, 1.0], away])[: len(offset)]  # (D, 3)
+    axes = schedule_lib.axes(yaw_rad)[: len(offset)]  # (D, 3)
     return home_m + offset @ axes, velocity @ axes, acceleration @ axes

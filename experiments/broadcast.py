@@ -22,6 +22,7 @@ from waggle_tasks.agents import observer_agent, receivers
 from waggle_tasks.experiments import (
   evaluator,
   launch,
+  nulls,
   provenance,
   recording_flags,
   records,
@@ -48,6 +49,7 @@ def main(argv: Sequence[str]) -> int:
   """Runs the scenario of the flags and returns the exit status."""
   scene = scenario_flags.read()
   receivers.make(_RECEIVER.value, scene.agreement)
+  nulls.check([scene], _RECEIVER.value)
   folder = pathlib.Path(_OUTPUT.value or records.free_folder('broadcast'))
   command = provenance.command_line('broadcast', launch.given_flags())
   with records.new_folder(folder) as draft:

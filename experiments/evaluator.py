@@ -13,8 +13,9 @@ import numpy as np
 
 from waggle_tasks import scenario
 from waggle_tasks.agents import observer_agent, receiver
+from waggle_tasks.experiments import reasons
 from waggle_tasks.experiments import rollout as rollout_lib
-from waggle_tasks.protocol import decoys, flight, timing
+from waggle_tasks.protocol import flight, timing
 from waggle_tasks.tasks import progress, safety
 
 # A message is eight motions between nine nulls (paper, section 'Motion
@@ -95,9 +96,7 @@ class Verdict:
 
 def expected_bits(scene: scenario.Scenario, number: int) -> str | None:
   """What observer `number`, from 1, should read; None for nothing."""
-  if scene.control in ('no_send', *decoys.DECOYS):
-    return None
-  if scene.control == 'interrupted' and scene.stop_s < scene.schedule.end_s:
+  if not scene.sends_message:
     return None
   if scene.control == 'black_input' and number == scene.black_observer:
     return None
@@ -164,16 +163,18 @@ def _judge_reading(
   until_s = math.inf if start_s is None else start_s
   failures += _early_motion(rollout, name, until_s)
   if message is None:
-    why = diagnose(events)
+    why = reasons.diagnose(events)
+    found = [f'message: none, {why}', *reasons.find(scene, rollout, name)]
     return Outcome(
       name, expected, start_s=start_s,
-      failures=(f'message: none, {why}', *failures), diagnosis=why,
+      failures=(*found, *failures), diagnosis=why,
     )  # fmt: skip
   seen = [e for e in events if isinstance(e, receiver.Event)]
   frame_events = seen[: seen.index(message) + 1][-NUM_EVENTS:]
   failures += _frame(frame_events, message.message.bits)
   if message.message.bits != expected:
     failures.append(f'message: read {message.message.bits}, sent {expected}')
+    failures += reasons.find(scene, rollout, name)
   final_null_s = message.time_s if message.symbol == 'NULL' else None
   if start_s != final_null_s:
     null = 'no final null'
@@ -260,9 +261,9 @@ def _fly(
   """Arrival and hold at the place that was sent, by true positions."""
   positions_m, times_s = rollout.steady_m(name), rollout.times_s
   begin = int(np.searchsorted(times_s, message_s - timing.FRAME_S / 2))
-  # An observer flies from where it was, drift and all, at the agreed height.
-  drift_m = (rollout.positions_m[name] - positions_m)[begin] * (1, 1, 0)
-  target_m = positions_m[begin] + drift_m + expected_displacement_m(scene)
+  # An observer flies from where it was, drift and all, to the agreed height.
+  target_m = rollout.positions_m[name][begin] + expected_displacement_m(scene)
+  target_m[2] = flight.HOVER_HEIGHT_M
   error_m = np.linalg.norm(positions_m - target_m, axis=1)
   speed_mps = (
     np.linalg.norm(
@@ -295,18 +296,3 @@ def _fly(
     'hold_s': hold_s,
     'failures': failures,
   }
-
-
-def diagnose(events: Sequence[rollout_lib.Event]) -> str:
-  """Where reading failed: the first motion that was not understood."""
-  seen = [e for e in events if isinstance(e, receiver.Event)]
-  if not seen:
-    return 'no null was ever confirmed'
-  for number, event in enumerate(seen):
-    if event.symbol == 'UNKNOWN':
-      motions = sum(e.symbol != 'NULL' for e in seen[: number + 1])
-      return f'motion {motions} unknown: {event.recognition.reason}'
-  broken = next((e for e in seen if e.rejection), None)
-  if broken is not None:
-    return broken.rejection
-  return f'still waited for {seen[-1].state} at the end'

@@ -9,7 +9,7 @@ import numpy as np
 
 from waggle_tasks import registry, scenario
 from waggle_tasks.agents import observer_agent, receiver
-from waggle_tasks.experiments import provenance
+from waggle_tasks.experiments import provenance, sight
 from waggle_tasks.experiments import traces as traces_lib
 from waggle_tasks.protocol import timing
 from waggle_tasks.tasks import safety
@@ -36,6 +36,9 @@ class Rollout:
     traces: By observer name, what its receiver saw in each image.
     drifts_m: By vehicle name, (T, 3) how far it was taken from its reference;
       nobody when empty.
+    targets_px: By observer name, (T, 2) where the performer truly was in its
+      picture, x right and y down; NaN behind the camera.
+    receiver: How observers read.
   """
 
   times_s: np.ndarray
@@ -45,6 +48,8 @@ class Rollout:
   renderer: str
   traces: dict[str, traces_lib.Trace] = dataclasses.field(default_factory=dict)
   drifts_m: dict[str, np.ndarray] = dataclasses.field(default_factory=dict)
+  targets_px: dict[str, np.ndarray] = dataclasses.field(default_factory=dict)
+  receiver: str = ''
 
   def steady_m(self, name: str) -> np.ndarray:
     """(T, 3) true positions of a vehicle, less its drift: nobody's command."""
@@ -69,24 +74,28 @@ def run(
   team = observer_agent.Team(scene.observers, receiver_name, scene.agreement)
   environment = registry.environment(scene)
   try:
-    return _run(environment, team, watchers)
+    rollout = play(environment, team, watchers)
+    return dataclasses.replace(rollout, receiver=receiver_name)
   finally:
     environment.close()
     gc.collect()  # Environments are cycles, and large.
 
 
-def _run(
+def play(
   environment: registry.composer.Environment,
   team: observer_agent.Team,
-  watchers: Sequence[Watcher],
+  watchers: Sequence[Watcher] = (),
 ) -> Rollout:
+  """Plays an episode in an environment, with a new team; closes nothing."""
   task, truth, drifts, contacts = environment.task, [], [], []
   tracer = traces_lib.Tracer(len(team.agents))
   timestep = environment.reset()
   physics = environment.physics  # Resetting may compile a new one.
+  seen = sight.Sight(physics, task.observers)
   while True:
     truth.append(task.positions_m(physics))
     drifts.append(task.drifts_m())
+    seen.note(physics, truth[-1]['performer'])
     time_s = (len(truth) - 1) * timing.FRAME_S
     contacts += [(time_s, pair) for pair in task.contacts]
     action = team.step(timestep.observation)
@@ -111,4 +120,5 @@ def _run(
     provenance.renderer_name(),
     dict(zip(events, tracer.traces(), strict=True)),
     {name: np.stack([d[name] for d in drifts]) for name in drifts[0]},
+    seen.places_px(),
   )

@@ -2,7 +2,6 @@
 
 from collections.abc import Iterable
 import dataclasses
-import math
 
 from waggle_tasks import scenario
 from waggle_tasks.agents import observer_agent, receiver
@@ -117,6 +116,4 @@ def symbol_at(gestures: Iterable[Sent], time_s: float) -> Symbol:
 
 def sent_in(scene: scenario.Scenario) -> tuple[Sent, ...]:
   """What the performer flies in a scenario."""
-  stops_s = {'no_send': 0.0, 'interrupted': scene.stop_s}
-  stop_s = stops_s.get(scene.control, math.inf)
-  return sent(scene.schedule, min(stop_s, scene.episode_s))
+  return sent(scene.schedule, min(scene.stops_s, scene.episode_s))

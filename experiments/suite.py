@@ -20,6 +20,7 @@ from waggle_tasks import errors, suites
 from waggle_tasks.agents import receivers
 from waggle_tasks.experiments import (
   launch,
+  nulls,
   provenance,
   suite_runner,
   suite_tables,
@@ -63,6 +64,8 @@ def main(argv: Sequence[str]) -> int:
     raise flags.Error(f'takes only flags, --name=value: got {argv[1]!r}.')
   cases = _cases()
   receivers.make(_RECEIVER.value)
+  if note := nulls.check([c.scene for c in cases], _RECEIVER.value):
+    print(note, file=sys.stderr)
   workers = launch.worker_count(_WORKERS)
   stem = pathlib.Path(_SUITE.value).stem
   name = '-'.join([stem, _RECEIVER.value, *_CASE.value])

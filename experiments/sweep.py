@@ -22,6 +22,7 @@ from waggle_tasks.experiments import (
   envelope,
   figures,
   launch,
+  nulls,
   pool,
   provenance,
   scenario_flags,
@@ -78,6 +79,8 @@ def main(argv: Sequence[str]) -> int:
   checks.integer(
     'replays', _REPLAYS.value, 0, _MOST_REPLAYS, sweep_cases.SweepError
   )
+  if note := nulls.check([c.scene for c in cases], _RECEIVER.value):
+    print(note, file=sys.stderr)
   workers = launch.worker_count(_WORKERS)
   engine = functools.partial(pool.run, workers=workers)
   if _SCHEDULER.value is not None:

@@ -212,7 +212,7 @@ def dancing(
 
   def make(**changes: object) -> registry.composer.Environment:
     at_once = {
-      'codebook': gestures.v_codebook(0.1, 0.3, duration_s=0.8),
+      'codebook': gestures.v_codebook(0.03, 0.18, duration_s=1.2),
       'pauses': timing.Timing(0.0, 0.0, 0.0, 0.0),
       'duration_s': 0.4,
       'observers': 2,

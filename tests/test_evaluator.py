@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 import dataclasses
+import functools
 import itertools
 
 import numpy as np
@@ -11,7 +12,8 @@ from waggle_tasks import scenario
 from waggle_tasks.agents import observer_agent, receiver, recogniser
 from waggle_tasks.experiments import evaluator
 from waggle_tasks.experiments import rollout as rollout_lib
-from waggle_tasks.protocol import flight, frame, payload
+from waggle_tasks.experiments import traces as traces_lib
+from waggle_tasks.protocol import flight, frame, payload, schedule, timing
 from waggle_tasks.protocol.symbols import Symbol
 from waggle_tasks.tasks import safety
 
@@ -51,6 +53,14 @@ def flown(
   return np.stack([plan.motion(time_s)[0] for time_s in TIMES_S])
 
 
+@functools.cache
+def danced(dance: schedule.Schedule) -> np.ndarray:  # (T, 3)
+  """Where a performer at (0, 0, 1.3) is, in front of its audience."""
+  home_m, axes = np.array([0.0, 0.0, 1.3]), schedule.axes(-np.pi / 2)[:2]
+  offsets_m = np.stack([dance.motion(time_s)[0] for time_s in TIMES_S])
+  return home_m + offsets_m @ axes
+
+
 class Case:
   """An episode of two observers that passes; tests break it."""
 
@@ -61,13 +71,15 @@ class Case:
       for name, pose in self.scene.poses().items()
     }
     self.contacts: list[tuple[float, tuple[str, str]]] = []
+    self.seen: dict[str, object] = {}  # What the rollout says of sight.
     self.events: dict[str, list[rollout_lib.Event]] = {}
     self.positions_m: dict[str, np.ndarray] = {}
     for name in self.homes:
-      offset_m = 0 * FORWARD_M if name == 'performer' else FORWARD_M
-      self.fly(name, offset_m)
-      if name != 'performer':
-        self.events[name] = [*read(BITS), deed(START, NULL_S)]
+      if name == 'performer':
+        self.positions_m[name] = danced(self.scene.schedule).copy()
+        continue
+      self.fly(name, FORWARD_M)
+      self.events[name] = [*read(BITS), deed(START, NULL_S)]
 
   def fly(
     self, name: str, offset_m: np.ndarray, begin_s: float = NULL_S
@@ -93,6 +105,7 @@ class Case:
       contacts=tuple(self.contacts),
       events={name: tuple(each) for name, each in self.events.items()},
       renderer='none',
+      **self.seen,
     )
     return evaluator.evaluate(self.scene, rollout)
 
@@ -369,3 +382,167 @@ def test_a_stop_after_the_dance_is_refused_or_sends_the_message() -> None:
   except scenario.ScenarioError:
     return
   assert evaluator.expected_bits(scene, 1) == scene.payload
+
+
+def blind(case: Case) -> Case:
+  """Lets the first observer read nothing."""
+  case.wait('observer_1')
+  return case
+
+
+def look(
+  case: Case, target_px: np.ndarray, centre_px: np.ndarray, valid: np.ndarray
+) -> None:
+  """Lets the first observer follow places while the target is at others."""
+  count = len(TIMES_S)
+  each = np.zeros(count)
+  case.seen['traces'] = {
+    'observer_1': traces_lib.Trace(
+      TIMES_S,
+      np.broadcast_to(centre_px, (count, 2)),
+      each, each, each,
+      np.broadcast_to(valid, count),
+    )
+  }  # fmt: skip
+  case.seen['targets_px'] = {
+    'observer_1': np.broadcast_to(target_px, (count, 2))
+  }
+
+
+MIDDLE_PX = np.array([320.0, 240.0])
+YES = np.ones(len(TIMES_S), bool)
+LOST = (TIMES_S < 20.0) | (TIMES_S > 26.0)
+BLINKED = np.arange(len(TIMES_S)) % 100 > 5
+
+
+def reasons(case: Case) -> tuple[str, ...]:
+  first, other = case.failures
+  assert first[0].startswith('message: ')
+  assert other == ()
+  return first[1:]
+
+
+def test_a_dancer_off_its_path_is_told_in_millimetres() -> None:
+  case = blind(Case())
+  assert reasons(case) == ()
+  case.move('performer', 30.0, 31.0, 0.019)
+  assert reasons(case) == ()
+  case.move('performer', 30.0, 31.0, 0.241)
+  said = 'dance: the performer was up to 260 mm off its path, first at 30.00 s'
+  assert reasons(case) == (said,)
+
+
+def test_a_dancer_off_its_path_is_told_with_a_wrong_message() -> None:
+  case = Case()
+  case.events['observer_1'] = [*read('000110'), deed(START, NULL_S)]
+  case.move('performer', 30.0, 31.0, 0.26)
+  (said,) = reasons(case)
+  assert said.startswith('dance: the performer was up to 260 mm')
+
+
+def test_drift_is_no_dancing_off_the_path() -> None:
+  case = blind(Case())
+  case.move('performer', 30.0, 31.0, 0.26)
+  drift_m = np.zeros((len(TIMES_S), 3))
+  drift_m[750:775, 0] = 0.26
+  case.seen['drifts_m'] = {'performer': drift_m}
+  assert reasons(case) == ()
+
+
+@pytest.mark.parametrize(
+  ('settle_s', 'receiver_name', 'said'),
+  [
+    (
+      0.5,
+      'klt',
+      'pause: 3.50 s between gestures, of which a null of klt',
+    ),
+    (1.0, 'klt', None),
+    (
+      0.1,
+      'view_bank',
+      'pause: 3.10 s between gestures, of which a null of v',
+    ),
+    (0.5, 'view_bank', None),
+    (0.1, 'klt:separators=off', None),
+  ],
+)
+def test_a_pause_that_is_short_for_the_null_is_told(
+  settle_s: float, receiver_name: str, said: str | None
+) -> None:
+  case = blind(Case(pauses=timing.Timing(settle_s=settle_s)))
+  case.seen['receiver'] = receiver_name
+  found = reasons(case)
+  assert len(found) == (said is not None)
+  assert all(each.startswith(said) for each in found)
+
+
+@pytest.mark.parametrize(
+  ('target_px', 'centre_px', 'valid', 'said'),
+  [
+    (MIDDLE_PX, MIDDLE_PX + 20, YES, ()),
+    (MIDDLE_PX, MIDDLE_PX, BLINKED, ()),
+    (
+      MIDDLE_PX, MIDDLE_PX, ~YES,
+      ('sight: no target was found; it was at 320, 240 px of 640 x 480',),
+    ),
+    (
+      np.array([-20.0, 240.0]), MIDDLE_PX, ~YES,
+      (
+        'sight: no target was found; it was outside of the picture, at -20, 240'
+        ' px of 640 x 480, and is looked for around the middle',
+      ),
+    ),
+    (
+      np.full(2, np.nan), MIDDLE_PX, ~YES,
+      ('sight: no target was found; it was behind the camera, and is looked'
+       ' for around the middle',),
+    ),
+    (
+      MIDDLE_PX, MIDDLE_PX, LOST,
+      (
+        'sight: the target was lost at 20.00 s for 6.04 s, when it was at 320,'
+        ' 240 px of 640 x 480',
+      ),
+    ),
+    (
+      np.array([320.0, 313.0]), MIDDLE_PX, YES,
+      (
+        'sight: followed 320, 240 px at 0.00 s, when the target was at 320,'
+        ' 313 px of 640 x 480',
+      ),
+    ),
+    (
+      np.where(TIMES_S[:, None] < 9, MIDDLE_PX, [320.0, -30.0]),
+      np.where(TIMES_S[:, None] < 9, MIDDLE_PX, [320.0, -5.0]), YES,
+      (
+        'sight: the target was outside of the picture, at 320, -30 px of'
+        ' 640 x 480, first at 9.00 s',
+      ),
+    ),
+  ],
+)  # fmt: skip
+def test_what_was_seen_of_the_target_is_told(
+  target_px: np.ndarray,
+  centre_px: np.ndarray,
+  valid: np.ndarray,
+  said: tuple[str, ...],
+) -> None:
+  case = blind(Case())
+  look(case, target_px, centre_px, valid)
+  assert reasons(case) == said
+
+
+@pytest.mark.parametrize(
+  ('bearing_deg', 'said'),
+  [(85.0, None), (90.0, '90 degrees from the front, edge-on'),
+   (144.0, '144 degrees from the front, from behind')],
+)  # fmt: skip
+def test_a_view_from_behind_is_told(
+  bearing_deg: float, said: str | None
+) -> None:
+  # The first of two stands at the lower end of the arc.
+  case = blind(Case(bearing_deg=bearing_deg + 20, half_span_deg=20.0))
+  found = case.failures[0][1:]
+  assert len(found) == (said is not None)
+  assert all(f'view: {said}' in each for each in found)

@@ -1,6 +1,6 @@
 """An observer reads its own images until it has a message, then flies it."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 import pytest
@@ -196,12 +196,82 @@ def test_a_team_has_one_agent_for_each_observer(count: int) -> None:
     np.testing.assert_array_equal(action[:3], HOME_M)
 
 
-@pytest.mark.parametrize('count', [1, 3])
-def test_a_team_needs_an_observation_for_each(count: int) -> None:
-  with pytest.raises(ValueError, match=r'shorter|longer'):
-    observer_agent.Team(2).step([observation(0.0)] * count)
-
-
 def test_a_team_of_an_unknown_receiver_is_refused() -> None:
   with pytest.raises(errors.WaggleError, match='`receiver` must be one of'):
     observer_agent.Team(1, 'ktl')
+
+
+@pytest.mark.parametrize(
+  ('spoil', 'error'),
+  [
+    (lambda o: o[:1], 'one for each of 2 agents: got 1'),
+    (lambda o: [*o, o[0]], 'one for each of 2 agents: got 3'),
+    (lambda o: [], 'one for each of 2 agents: got 0'),
+    (lambda o: o[0], 'one for each of 2 agents: got 3'),
+    (lambda o: ['camera', o[1]], 'agent 1 lacks camera, time_s, position_m'),
+    (lambda o: [o[0], {**o[1], 'position_m': [0, 1]}], 'agent 2 must be 3 fin'),
+    (
+      lambda o: [o[0], {**o[1], 'time_s': np.nan}],
+      'of agent 2 must be a finite',
+    ),
+    (
+      lambda o: [o[0], {**o[1], 'time_s': None}],
+      'agent 2 must be a finite num',
+    ),
+    (
+      lambda o: [o[0], {**o[1], 'position_m': [0, 1, np.nan]}],
+      '`position_m` of agent 2 must be 3 finite numbers',
+    ),
+    *(
+      (
+        lambda o, name=name: [o[0], {k: o[1][k] for k in o[1] if k != name}],
+        f'camera, time_s, position_m: that of agent 2 lacks {name}$',
+      )
+      for name in observer_agent.SIGHTS
+    ),
+  ],
+)
+def test_a_team_refuses_what_is_no_observation_before_anybody_takes_it(
+  spoil: Callable[[list], object], error: str
+) -> None:
+  team = observer_agent.Team(2)
+  scripts = Script(), Script()
+  team.agents = tuple(map(agent_of, scripts))
+  seen = [observation(0.0), observation(0.0, HOME_M + 1)]
+  with pytest.raises(observer_agent.ObservationError, match=error):
+    team.step(spoil(seen))
+  assert [script.times_s for script in scripts] == [[], []]
+  actions = team.step(seen)  # The team goes on.
+  np.testing.assert_array_equal(actions[1][:3], HOME_M + 1)
+
+
+def test_an_image_that_its_receiver_refuses_was_never_taken() -> None:
+  class Picky(Script):
+    def step(self, image: np.ndarray, time_s: float) -> tuple:
+      if image.size == 0:
+        raise ValueError('empty')
+      return super().step(image, time_s)
+
+  def run(*images: np.ndarray) -> observer_agent.Navigation:
+    agent = agent_of(Picky(null(0.04, FORWARD)))
+    for image in images:
+      if image.size == 0:
+        with pytest.raises(ValueError, match='empty'):
+          agent.step(observation(0.04, image=image))
+      else:
+        agent.step(observation(0.0 if agent._action is None else 0.04))
+    return agent.events[-1]
+
+  clean = run(GREY, GREY)
+  spoilt = run(GREY, GREY[:0], GREY)
+  assert (spoilt.images, spoilt.provenance) == (clean.images, clean.provenance)
+
+
+def test_an_agent_alone_refuses_what_is_no_observation() -> None:
+  script = Script()
+  agent = agent_of(script)
+  with pytest.raises(
+    observer_agent.ObservationError, match='that of this agent lacks camera'
+  ):
+    agent.step({'time_s': 0.0, 'position_m': HOME_M})
+  assert script.times_s == []

@@ -18,7 +18,7 @@ Load = Callable[..., composer.Environment]
 TASKS = ('broadcast', 'no_send', 'black_input', 'interrupted')
 FORWARD = (0.0, 0.4, 0.0)
 HURRIED = {
-  'codebook': gestures.v_codebook(0.05, 0.1, duration_s=0.8),
+  'codebook': gestures.v_codebook(0.02, 0.08, duration_s=0.8),
   'pauses': timing.Timing(0.2, 0.0, 0.1, 0.0),
 }
 HURRIED_END_S = 0.2 + 8 * 0.8 + 7 * 0.1

@@ -256,11 +256,11 @@ def test_the_default_stop_is_the_papers() -> None:
 
 def test_another_codebook_and_timing_make_another_dance() -> None:
   scene = Scenario(
-    codebook=gestures.v_codebook(duration_s=2.0),
+    codebook=gestures.v_codebook(duration_s=4.0),
     pauses=timing.Timing(1.0, 0.0, 1.0, 0.0),
     payload='101010',
   )
-  assert scene.schedule.end_s == pytest.approx(1 + 8 * 2 + 7)
+  assert scene.schedule.end_s == pytest.approx(1 + 8 * 4 + 7)
   symbols = [slot.gesture.symbol for slot in scene.schedule.slots]
   assert ' '.join(symbols) == 'START 1 0 1 0 1 0 END'
 

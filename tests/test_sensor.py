@@ -49,8 +49,8 @@ def deliver(
   for frame in range(frames):
     each.advance(round(frame * 0.04, 6))
     picture = np.full((2, 4, 3), frame if level is None else level, np.uint8)
-    images.append(each.image(picture, random_state).copy())
-    times_s.append(each.time_s(np.array(math.nan), random_state))
+    images.append(each.image(picture).copy())
+    times_s.append(each.time_s)
   return np.array(images), np.rint(np.array(times_s) / 0.04).astype(int)
 
 
@@ -114,7 +114,7 @@ def test_exposure_blends_in_the_image_before(
   for frame, level in enumerate([0, 200, 0, 0]):
     each.advance(frame * 0.04)
     picture = np.full((2, 4, 3), level, np.uint8)
-    levels.append(int(each.image(picture, None).max()))
+    levels.append(int(each.image(picture).max()))
   assert levels == [0, 200 * (1 - share), 200 * share, 0]
 
 
@@ -183,7 +183,7 @@ def test_the_noise_of_a_dropped_image_does_not_change() -> None:
   seen = []
   for frame in range(3):
     each.advance(frame * 0.04)
-    seen.append(each.image(np.full(SHAPE, 90, np.uint8), None).copy())
+    seen.append(each.image(np.full(SHAPE, 90, np.uint8)).copy())
   np.testing.assert_array_equal(seen, [seen[0]] * 3)
 
 

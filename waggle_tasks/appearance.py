@@ -38,8 +38,6 @@ class Appearance:
     checks.choice('floor', self.floor, FLOORS, AppearanceError)
     checks.choice('walls', self.walls, WALLS, AppearanceError)
     checks.choice('sun', self.sun, SUNS, AppearanceError)
-    checks.number('brightness', self.brightness, 0.1, 2, AppearanceError)
-    if not isinstance(self.shadows, bool):
-      raise AppearanceError(
-        f'`shadows` must be True or False: got {self.shadows!r}'
-      )
+    checks.settle_numbers(self, {'brightness': (0.1, 2)}, AppearanceError)
+    shadows = checks.switch('shadows', self.shadows, AppearanceError)
+    checks.settle(self, 'shadows', shadows)

@@ -8,10 +8,15 @@ from waggle_tasks import scenario as scenario_lib
 from waggle_tasks.arenas import flight_room
 from waggle_tasks.entities import observer, performer
 from waggle_tasks.protocol import checks, decoys
-from waggle_tasks.tasks import broadcast, controls
+from waggle_tasks.tasks import broadcast, controls, copies
 from waggle_tasks.tasks import parts as parts_lib
 
 Scenario = scenario_lib.Scenario
+
+
+class Environment(copies.Uncopied, composer.Environment):
+  """A composer environment that says why it cannot be copied."""
+
 
 SCENARIOS = {
   'broadcast': Scenario(),
@@ -77,9 +82,9 @@ def build(scenario: Scenario) -> broadcast.Broadcast:
   return broadcast.Broadcast(parts)
 
 
-def environment(scenario: Scenario) -> composer.Environment:
+def environment(scenario: Scenario) -> Environment:
   """The environment of a scenario; close it in the thread that made it."""
-  return composer.Environment(
+  return Environment(
     build(scenario),
     random_state=scenario.seed,
     strip_singleton_obs_buffer_dim=True,
@@ -87,7 +92,7 @@ def environment(scenario: Scenario) -> composer.Environment:
   )
 
 
-def load(name: str, **changes: object) -> composer.Environment:
+def load(name: str, **changes: object) -> Environment:
   """Makes the environment of a named scenario.
 
   Args:

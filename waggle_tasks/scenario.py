@@ -9,7 +9,14 @@ from waggle_tasks import sensor as sensor_lib
 from waggle_tasks.arenas import flight_room, layouts
 from waggle_tasks.entities import eye, observer
 from waggle_tasks.protocol import agreement as agreement_lib
-from waggle_tasks.protocol import checks, clock, decoys, gestures, timing
+from waggle_tasks.protocol import (
+  checks,
+  clock,
+  decoys,
+  gestures,
+  limits,
+  timing,
+)
 from waggle_tasks.protocol import payload as payload_lib
 from waggle_tasks.protocol import schedule as schedule_lib
 from waggle_tasks.tasks import drift as drift_lib
@@ -107,16 +114,10 @@ class Scenario:
         )
     checks.choice('control', self.control, CONTROLS, ScenarioError)
     checks.choice('camera', self.camera, observer.CAMERAS, ScenarioError)
-    integers = {
-      'observers': (1, MAX_OBSERVERS),
-      'seed': (0, 2**32 - 1),
+    counts = {'observers': (1, MAX_OBSERVERS), 'seed': (0, 2**32 - 1)}
+    checks.settle_numbers(self, counts, ScenarioError)
+    bounds = {
       'black_observer': (1, self.observers),
-    }
-    if self.control != 'black_input':
-      del integers['black_observer']
-    for name, (low, high) in integers.items():
-      checks.integer(name, getattr(self, name), low, high, ScenarioError)
-    numbers = {
       'distance_m': (0.2, 4.0),
       'half_span_deg': (0.0, 180.0),
       'bearing_deg': (-180.0, 180.0),
@@ -126,10 +127,12 @@ class Scenario:
       'eye_offset_m': (-0.1, 0.1),
       'duration_s': (timing.FRAME_S, 600.0),
     }
+    if self.control != 'black_input':
+      del bounds['black_observer']
     if self.duration_s is None:
-      del numbers['duration_s']
-    for name, (low, high) in numbers.items():
-      checks.number(name, getattr(self, name), low, high, ScenarioError)
+      del bounds['duration_s']
+    checks.settle_numbers(self, bounds, ScenarioError)
+    limits.check_codebook(self.codebook)
     payload_lib.Payload.from_bits(self.payload)
     longest = payload_lib.Payload.from_bits('000011')
     reach_m = math.hypot(*longest.displacement_m(self.units))
@@ -153,6 +156,19 @@ class Scenario:
     return decoys.dance(
       self.control, self.message, self.seed, self.codebook, self.pauses
     )
+
+  @property
+  def stops_s(self) -> float:
+    """When the dance ends by itself, or is stopped; 0 without one."""
+    ends_s = {'no_send': 0.0, 'interrupted': self.stop_s}
+    return min(self.schedule.end_s, ends_s.get(self.control, math.inf))
+
+  @property
+  def sends_message(self) -> bool:
+    """Whether a whole message is danced."""
+    if self.control in ('no_send', *decoys.DECOYS):
+      return False
+    return self.stops_s >= self.schedule.end_s
 
   @property
   def episode_s(self) -> float:

@@ -24,6 +24,7 @@ _LIMITS = {
   'repeated_share': (0.0, 1.0),
   'freeze_s': (0.0, ALWAYS_S),
   'freeze_length_s': (0.0, ALWAYS_S),
+  'late_frames': (0, timing.FRAME_RATE_HZ),
   'dropped_share': (0.0, 1.0),
 }
 
@@ -84,11 +85,7 @@ class Sensor:
   dropped_share: float = 0.0
 
   def __post_init__(self) -> None:
-    for name, (low, high) in _LIMITS.items():
-      checks.number(name, getattr(self, name), low, high, SensorError)
-    checks.integer(
-      'late_frames', self.late_frames, 0, timing.FRAME_RATE_HZ, SensorError
-    )
+    checks.settle_numbers(self, _LIMITS, SensorError)
     if 0 < self.photons < MIN_PHOTONS:
       raise SensorError(
         f'`photons` must be 0 or at least {MIN_PHOTONS:g}: got {self.photons!r}'

@@ -32,10 +32,9 @@ class Camera:
   focal_px: float = 240 / math.tan(math.radians(30))
 
   def __post_init__(self) -> None:
-    for name in ('columns', 'rows'):
-      value = getattr(self, name)
-      checks.integer(name, value, MIN_SIDE_PX, MAX_SIDE_PX, CameraError)
-    checks.number('focal_px', self.focal_px, 1.0, 1e5, CameraError)
+    sides = (MIN_SIDE_PX, MAX_SIDE_PX)
+    bounds = {'columns': sides, 'rows': sides, 'focal_px': (1.0, 1e5)}
+    checks.settle_numbers(self, bounds, CameraError)
 
   @property
   def zoom(self) -> float:

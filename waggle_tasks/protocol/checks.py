@@ -1,7 +1,15 @@
-"""Checks that configuration values share; each names the field it refuses."""
+"""Checks that configuration values share; each names the field it refuses.
 
-from collections.abc import Sequence
+Numbers come from anywhere: numpy's are as good as Python's. Each check returns
+the plain Python value, and that is what a configuration keeps, so that it
+compares, prints and is written in the same way wherever it came from.
+"""
+
+from collections.abc import Mapping, Sequence
 import math
+import numbers
+
+import numpy as np
 
 from waggle_tasks import errors
 
@@ -12,7 +20,7 @@ def number(
   minimum: float,
   maximum: float,
   error: type[errors.WaggleError],
-) -> None:
+) -> float:
   """Refuses a value that is not a finite number in [minimum, maximum].
 
   Args:
@@ -22,16 +30,32 @@ def number(
     maximum: Largest value allowed.
     error: What to raise.
 
+  Returns:
+    The value as a plain number: an int when it is a whole number by its type,
+    otherwise a float.
+
   Raises:
     WaggleError: of type `error`, naming the field, the rule and the value.
   """
-  is_number = isinstance(value, (int, float)) and not isinstance(value, bool)
-  if not is_number or not math.isfinite(value):
+  if not isinstance(value, numbers.Real) or isinstance(value, bool):
     raise error(f'`{field}` must be a finite number: got {value!r}')
-  if not minimum <= value <= maximum:
+  plain = _plain(value)
+  if not math.isfinite(plain):
+    raise error(f'`{field}` must be a finite number: got {plain!r}')
+  if not minimum <= plain <= maximum:
     raise error(
-      f'`{field}` must be between {minimum:g} and {maximum:g}: got {value!r}'
+      f'`{field}` must be between {minimum:g} and {maximum:g}: got {plain!r}'
     )
+  return plain
+
+
+def _plain(value: numbers.Real) -> float:
+  """An int or a float; infinite where it is beyond all floats."""
+  try:
+    nearest = float(value)
+  except OverflowError:
+    return math.inf if value > 0 else -math.inf
+  return int(value) if isinstance(value, numbers.Integral) else nearest
 
 
 def integer(
@@ -40,28 +64,66 @@ def integer(
   minimum: int,
   maximum: int,
   error: type[errors.WaggleError],
-) -> None:
+) -> int:
   """Refuses a value that is not an integer in [minimum, maximum].
 
+  Returns:
+    The value as a plain int.
+
   Raises:
     WaggleError: of type `error`, naming the field, the rule and the value.
   """
-  if not isinstance(value, int) or isinstance(value, bool):
+  if not isinstance(value, numbers.Integral) or isinstance(value, bool):
     raise error(f'`{field}` must be an integer: got {value!r}')
-  if not minimum <= value <= maximum:
+  plain = int(value)
+  if not minimum <= plain <= maximum:
     raise error(
-      f'`{field}` must be between {minimum} and {maximum}: got {value!r}'
+      f'`{field}` must be between {minimum} and {maximum}: got {plain!r}'
     )
+  return plain
 
 
-def switch(field: str, value: bool, error: type[errors.WaggleError]) -> None:
+def switch(field: str, value: bool, error: type[errors.WaggleError]) -> bool:
   """Refuses a value that is neither True nor False.
 
+  Returns:
+    The value as a plain bool.
+
   Raises:
     WaggleError: of type `error`, naming the field, the rule and the value.
   """
-  if not isinstance(value, bool):
+  if not isinstance(value, (bool, np.bool_)):
     raise error(f'`{field}` must be True or False: got {value!r}')
+  return bool(value)
+
+
+def settle_numbers(
+  values: object,
+  limits: Mapping[str, tuple[float, float]],
+  error: type[errors.WaggleError],
+) -> None:
+  """Checks fields of a frozen dataclass; plain numbers stay in them.
+
+  A field that is declared as int takes integers only.
+
+  Args:
+    values: The dataclass, in its `__post_init__`.
+    limits: Smallest and largest value of each field, by its name.
+    error: What to raise.
+
+  Raises:
+    WaggleError: see `number` and `integer`.
+  """
+  for field, (low, high) in limits.items():
+    whole = type(values).__dataclass_fields__[field].type is int
+    check = integer if whole else number
+    plain = check(field, getattr(values, field), low, high, error)
+    settle(values, field, plain)
+
+
+def settle(values: object, field: str, value: object) -> None:
+  """Puts what a check has returned into a frozen dataclass."""
+  object.__setattr__(values, field, value)
 
 
 def choice(

@@ -38,8 +38,8 @@ class Tolerance:
   clock_delay_s: float = 0.6
 
   def __post_init__(self) -> None:
-    checks.number('clock_rate', self.clock_rate, 0.0, 0.2, ClockError)
-    checks.number('clock_delay_s', self.clock_delay_s, 0.0, 10.0, ClockError)
+    bounds = {'clock_rate': (0.0, 0.2), 'clock_delay_s': (0.0, 10.0)}
+    checks.settle_numbers(self, bounds, ClockError)
 
   def allowed_s(self, elapsed_s: float) -> float:
     """How much a time that should be `elapsed_s` may be off."""

@@ -25,6 +25,21 @@ ARRIVAL_DWELL_S = 0.4
 HOLD_S = 2.0
 
 
+def goal_m(begin_m: np.ndarray, displacement_m: np.ndarray) -> np.ndarray:
+  """Where a message leads to: equation 2, at the agreed height.
+
+  Args:
+    begin_m: (3,) where its reader hovers, at whatever height.
+    displacement_m: (3,) what it commands.
+
+  Returns:
+    (3,) world metres.
+  """
+  goal_m = begin_m + displacement_m
+  goal_m[2] = HOVER_HEIGHT_M
+  return goal_m
+
+
 @dataclasses.dataclass(frozen=True, eq=False)
 class Flight:
   """A straight flight between two points at rest.

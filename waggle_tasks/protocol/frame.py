@@ -78,7 +78,8 @@ class Rules:
 
   def __post_init__(self) -> None:
     for field in dataclasses.fields(self):
-      checks.switch(field.name, getattr(self, field.name), FrameError)
+      plain = checks.switch(field.name, getattr(self, field.name), FrameError)
+      checks.settle(self, field.name, plain)
 
 
 @dataclasses.dataclass(frozen=True)

@@ -76,15 +76,27 @@ class Gesture:
     name = f'gesture {self.symbol}'
     checks.choice('symbol', self.symbol, MOTIONS, CodebookError)
     object.__setattr__(self, 'symbol', Symbol(self.symbol))
-    checks.number(f'{name} duration_s', self.duration_s, 0.1, 60, CodebookError)
+    duration_s = checks.number(
+      f'{name} duration_s', self.duration_s, 0.1, 60, CodebookError
+    )
+    checks.settle(self, 'duration_s', duration_s)
     if len(self.corners_m) < 3:
       raise CodebookError(
         f'`{name} corners_m` must have at least 3 corners:'
         f' got {len(self.corners_m)}'
       )
-    for corner in self.corners_m:
-      for value in corner:
+    corners_m = tuple(
+      tuple(
         checks.number(f'{name} corners_m', value, -1.2, 2.0, CodebookError)
+        for value in corner
+      )
+      for corner in self.corners_m
+    )
+    if any(len(corner) != 2 for corner in corners_m):
+      raise CodebookError(
+        f'`{name} corners_m` must be pairs of right and up: got {corners_m}'
+      )
+    checks.settle(self, 'corners_m', corners_m)
     if any(corner != (0, 0) for corner in self.corners_m[:: len(self) - 1]):
       raise CodebookError(
         f'`{name} corners_m` must begin and end at (0, 0):'
@@ -148,6 +160,7 @@ class Codebook:
   gestures: tuple[Gesture, ...]
 
   def __post_init__(self) -> None:
+    checks.settle(self, 'gestures', tuple(self.gestures))
     symbols = sorted(gesture.symbol for gesture in self.gestures)
     if symbols != sorted(MOTIONS):
       raise CodebookError(
@@ -196,9 +209,8 @@ def v_codebook(
   Raises:
     CodebookError: if a size is not one that can be flown.
   """
-  checks.number('half_width_m', half_width_m, 0.01, 1.2, CodebookError)
-  checks.number('start_height_m', start_height_m, 0.01, 2.0, CodebookError)
-  w, h = half_width_m, start_height_m
+  w = checks.number('half_width_m', half_width_m, 0.01, 1.2, CodebookError)
+  h = checks.number('start_height_m', start_height_m, 0.01, 2.0, CodebookError)
   hover = (0.0, 0.0)
   return Codebook(
     (

@@ -28,12 +28,11 @@ class Units:
   distance_unit_m: float = 0.2
 
   def __post_init__(self) -> None:
-    checks.number(
-      'heading_step_rad', self.heading_step_rad, 1e-3, math.pi, PayloadError
-    )
-    checks.number(
-      'distance_unit_m', self.distance_unit_m, 1e-3, 1.0, PayloadError
-    )
+    limits = {
+      'heading_step_rad': (1e-3, math.pi),
+      'distance_unit_m': (1e-3, 1.0),
+    }
+    checks.settle_numbers(self, limits, PayloadError)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -51,9 +50,8 @@ class Payload:
   distance: int
 
   def __post_init__(self) -> None:
-    checks.integer('direction', self.direction, 0, 1, PayloadError)
-    checks.integer('heading', self.heading, 0, 7, PayloadError)
-    checks.integer('distance', self.distance, 0, 3, PayloadError)
+    limits = {'direction': (0, 1), 'heading': (0, 7), 'distance': (0, 3)}
+    checks.settle_numbers(self, limits, PayloadError)
 
   @classmethod
   def from_bits(cls, bits: str) -> 'Payload':
@@ -77,7 +75,7 @@ class Payload:
     Raises:
       PayloadError: if `value` is not an integer from 0 to 63.
     """
-    checks.integer('payload', value, 0, 2**NUM_BITS - 1, PayloadError)
+    value = checks.integer('payload', value, 0, 2**NUM_BITS - 1, PayloadError)
     return cls(value >> 5, value >> 2 & 0b111, value & 0b11)
 
   @property

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable
 import dataclasses
+import math
 from typing import Protocol
 
 import numpy as np
@@ -33,6 +34,18 @@ class Path(Protocol):
     out of the plane, away from the audience.
     """
     ...
+
+
+def axes(yaw_rad: float) -> np.ndarray:  # (3, 3)
+  """World axes of a dance, as rows: right, up, and away from the audience.
+
+  Args:
+    yaw_rad: The performer's heading: it faces its audience, so that their
+      right is its left.
+  """
+  right = [-math.sin(yaw_rad), math.cos(yaw_rad), 0.0]
+  away = [-math.cos(yaw_rad), -math.sin(yaw_rad), 0.0]
+  return np.array([right, [0.0, 0.0, 1.0], away])
 
 
 @dataclasses.dataclass(frozen=True)

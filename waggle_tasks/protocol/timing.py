@@ -41,9 +41,8 @@ class Timing:
   lead_in_s: float = 1.0
 
   def __post_init__(self) -> None:
-    for field in dataclasses.fields(self):
-      value = getattr(self, field.name)
-      checks.number(field.name, value, 0.0, 60.0, TimingError)
+    limits = {field.name: (0.0, 60.0) for field in dataclasses.fields(self)}
+    checks.settle_numbers(self, limits, TimingError)
 
   @property
   def pause_s(self) -> float:

@@ -8,12 +8,7 @@ import numpy as np
 
 from waggle_tasks import errors
 from waggle_tasks.arenas import flight_room
-from waggle_tasks.protocol import reference
-
-# Limits of the stock firmware: 1 m/s per axis, and 20 degrees of tilt, which
-# give 3.57 m/s^2 sideways.
-_MAX_SPEED_MPS = 1.0
-_MAX_ACCELERATION_MPS2 = 3.57
+from waggle_tasks.protocol import limits, reference
 
 
 class ActionError(errors.WaggleError):
@@ -62,8 +57,8 @@ def _bounds() -> tuple[np.ndarray, np.ndarray]:
   room = flight_room
   low_m = np.array([-room.HALF_WIDTH_M, -room.HALF_DEPTH_M, 0.0])
   high_m = np.array([room.HALF_WIDTH_M, room.HALF_DEPTH_M, room.HEIGHT_M])
-  speed = np.full(3, _MAX_SPEED_MPS)
-  acceleration = np.full(3, _MAX_ACCELERATION_MPS2)
+  speed = np.full(3, limits.MAX_SPEED_MPS)
+  acceleration = np.full(3, limits.MAX_SIDEWAYS_MPS2)
   return (
     np.concatenate([low_m, -speed, -acceleration, [-math.pi], low_m]),
     np.concatenate([high_m, speed, acceleration, [math.pi], high_m]),

@@ -1,6 +1,6 @@
 """The broadcast: one performer dances, observers read it and fly."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 import math
 
 from dm_control import composer, mjcf
@@ -10,15 +10,23 @@ import numpy as np
 
 from waggle_tasks.arenas import flight_room, layouts
 from waggle_tasks.entities import controller, observer, performer
-from waggle_tasks.protocol import flight, reference, timing
-from waggle_tasks.tasks import actions, progress, safety
+from waggle_tasks.protocol import timing
+from waggle_tasks.tasks import (
+  actions,
+  contacts,
+  copies,
+  flights,
+  safety,
+  switches,
+)
+from waggle_tasks.tasks import clock as clock_lib
 from waggle_tasks.tasks import parts as parts_lib
 
 PHYSICS_TIMESTEP_S = 0.004
 OBSERVATIONS = ('camera', 'time_s', 'position_m')
 
 
-class Broadcast(composer.Task):
+class Broadcast(copies.Uncopied, composer.Task):
   """Observers see a dance, each through its own eye, and fly its message.
 
   Observations are a list of dicts, one for each observer: `camera`
@@ -53,8 +61,8 @@ class Broadcast(composer.Task):
         parts.room.mjcf_model, vehicle, pose.yaw_rad
       )
     for visible in self.observables:
-      for each in visible.values():
-        each.enabled = True
+      for name in OBSERVATIONS:
+        visible[name].enabled = True
     self.set_timesteps(timing.FRAME_S, PHYSICS_TIMESTEP_S)
 
   @property
@@ -74,12 +82,34 @@ class Broadcast(composer.Task):
 
   @property
   def observables(self) -> list[dict[str, observable.Observable]]:
-    """For each observer what it may see."""
+    """For each observer what it may see; those of `OBSERVATIONS` are on."""
     everything = [
       each.observables.as_dict(fully_qualified=False)
       for each in self._observers.values()
     ]
-    return [{name: all_[name] for name in OBSERVATIONS} for all_ in everything]
+    usual = [{name: all_[name] for name in OBSERVATIONS} for all_ in everything]
+    return [{**a, **b} for a, b in zip(usual, everything, strict=True)]
+
+  def set_timesteps(
+    self, control_timestep: float, physics_timestep: float
+  ) -> None:
+    """See `composer.Task`; a control step is a frame.
+
+    Raises:
+      ClockError: if it is not, or if the physics step is too long.
+    """
+    clock_lib.check_timesteps(control_timestep, physics_timestep)
+    super().set_timesteps(control_timestep, physics_timestep)
+
+  @composer.Task.control_timestep.setter
+  def control_timestep(self, new_value: float) -> None:
+    """See `set_timesteps`."""
+    self.set_timesteps(new_value, self.physics_timestep)
+
+  @composer.Task.physics_timestep.setter
+  def physics_timestep(self, new_value: float) -> None:
+    """See `set_timesteps`."""
+    self.set_timesteps(self.control_timestep, new_value)
 
   def after_compile(
     self, physics: mjcf.Physics, random_state: np.random.RandomState
@@ -95,7 +125,13 @@ class Broadcast(composer.Task):
   def initialize_episode(
     self, physics: mjcf.Physics, random_state: np.random.RandomState
   ) -> None:
-    """Places the vehicles and begins the dance."""
+    """Places the vehicles and begins the dance.
+
+    Raises:
+      ClockError: if the time step is not that which was compiled.
+      ObservableError: if something is to be observed that nobody can see.
+    """
+    switches.check(self, self.observers, physics)
     poses = layouts.jittered(
       [self._parts.poses[name] for name in self._vehicles],
       self._parts.jitter_m,
@@ -113,17 +149,20 @@ class Broadcast(composer.Task):
         np.array(pose.position_m),
         np.array([math.cos(half_rad), 0.0, 0.0, math.sin(half_rad)]),
       )
-    self._frame = 0
+    self._clock = clock_lib.Clock(physics)
     self._begin_dance()
-    displacement_m = self._parts.message.displacement_m(self._parts.units)
-    self._gates, self._progress = [], []
-    self._requests: dict[str, flight.Flight] = {}
-    for name in self._observers:
-      home_m = np.array(self._homes[name].position_m)
-      hold = reference.Reference.hover(home_m)
-      self._gates.append(safety.Gate(name, hold))
-      target_m = home_m + displacement_m if self.sends_message else None
-      self._progress.append(progress.Progress(home_m, target_m))
+    self._begin_flights()
+
+  def _begin_flights(self) -> None:
+    """Lets every observer wait at its place."""
+    displacement_m = None
+    if self.sends_message:
+      displacement_m = self._parts.message.displacement_m(self._parts.units)
+    self._flights = flights.Flights(
+      {n: np.array(self._homes[n].position_m) for n in self._observers},
+      displacement_m,
+      self._parts.minimum_spacing_m,
+    )
     self._rewards = [0.0] * len(self._observers)
     self._contacts: tuple[tuple[str, str], ...] = ()
 
@@ -149,7 +188,7 @@ class Broadcast(composer.Task):
   ) -> None:
     """Makes all physics steps of the control step but the last."""
     del action, random_state
-    steps = round(self.control_timestep / self.physics_timestep)
+    steps = round(self.control_timestep / physics.timestep())
     physics.step(steps - 1)
 
   def before_step(
@@ -162,25 +201,40 @@ class Broadcast(composer.Task):
 
     Raises:
       ActionError: if the action is not one finite reference per observer.
+      ClockError: if the physics was set to a state that cannot be flown on.
     """
     del random_state
-    time_s = self._frame * timing.FRAME_S
-    middle_s = time_s + timing.FRAME_S / 2
+    if self._clock.was_set(physics):
+      self._replay(physics)
+    time_s, middle_s = self._clock.time_s, self._clock.middle_s
     home = self._homes['performer']
     motion = self.performer.motion(
       np.array(home.position_m), home.yaw_rad, middle_s
     )
     self._command(physics, 'performer', motion)
     wanted = actions.read(action, [*self._observers])
-    self._judge(wanted, self.positions_m(physics), time_s)
-    for gate, each in zip(self._gates, wanted, strict=True):
-      followed = gate.follow(each, time_s)
-      motion = (
-        followed.position_m,
-        followed.velocity_mps,
-        followed.acceleration_mps2,
+    followed = self._flights.follow(
+      wanted, self.positions_m(physics), self.drifts_m(), time_s
+    )
+    for name, each in followed.items():
+      motion = each.position_m, each.velocity_mps, each.acceleration_mps2
+      self._command(physics, name, motion, each.turn_rad)
+
+  def _replay(self, physics: mjcf.Physics) -> None:
+    """Goes on from a time that the physics was set to."""
+    if self._flights.begun:
+      raise clock_lib.ClockError(
+        '`time` must not be set once an observer was given its command:'
+        ' `reset` and play the actions again'
       )
-      self._command(physics, gate.name, motion, followed.turn_rad)
+    if any(each.is_spoilt for each in self.observers):
+      raise clock_lib.ClockError(
+        '`time` must not be set where a sensor spoils images, as it draws on'
+        ' and on: `load` again with the same seed and play the actions again'
+      )
+    self._clock.set(physics)
+    self._begin_flights()
+    physics.forward()
 
   def _command(
     self,
@@ -190,79 +244,25 @@ class Broadcast(composer.Task):
     turn_rad: float = 0.0,
   ) -> None:
     """Commands a vehicle to where it drifts from where it should be."""
-    middle_s = (self._frame + 0.5) * timing.FRAME_S
-    drift = self._wanders[name].at(middle_s)
+    drift = self._wanders[name].at((self._clock.frame + 0.5) * timing.FRAME_S)
     moved = [each + off[:3] for each, off in zip(motion, drift, strict=True)]
     self._controllers[name].command(physics, *moved, turn_rad + drift[0][3])
-
-  def _judge(
-    self,
-    wanted: Sequence[reference.Reference],
-    positions_m: Mapping[str, np.ndarray],
-    time_s: float,
-  ) -> None:
-    """Accepts or refuses the commands that have waited for others."""
-    for gate, each in zip(self._gates, wanted, strict=True):
-      plan = gate.request(each, positions_m[gate.name], time_s)
-      if plan is not None:
-        self._requests.setdefault(gate.name, plan)
-    if not self._requests:
-      return
-    due = {
-      name: plan
-      for name, plan in self._requests.items()
-      if safety.is_due(plan, time_s)
-    }
-    plans = {gate.name: gate.plan for gate in self._gates if gate.plan}
-    others = {**positions_m, **plans, **self._requests}
-    reasons = safety.refuse(
-      due, others, positions_m, self._parts.minimum_spacing_m
-    )
-    drifts_m = self.drifts_m()
-    for gate, each in zip(self._gates, self._progress, strict=True):
-      if gate.name in due:
-        gate.judge(self._requests.pop(gate.name), reasons.get(gate.name))
-        # A displacement counts from where it was read, drift and all; its
-        # height is the agreed one.
-        each.shift(drifts_m[gate.name] * (1.0, 1.0, 0.0))
 
   def after_step(
     self, physics: mjcf.Physics, random_state: np.random.RandomState
   ) -> None:
     """Takes stock of the step."""
     del random_state
-    self._frame += 1
-    self._contacts = self._find_contacts(physics)
+    self._clock.tick(physics)
+    self._contacts = contacts.find(physics)
+    drifts = self._drifts()
     positions_m = self.positions_m(physics)
     velocities_mps = self.velocities_mps(physics)
-    drifts = self._drifts()
-    authorised = (
-      self.sends_message
-      and self._frame * timing.FRAME_S >= self.performer.end_s
+    self._rewards = self._flights.update(
+      {name: positions_m[name] - off[0] for name, off in drifts.items()},
+      {name: velocities_mps[name] - off[1] for name, off in drifts.items()},
+      self.sends_message and self._clock.time_s >= self.performer.end_s,
     )
-    self._rewards = [
-      each.update(
-        positions_m[name] - drifts[name][0],
-        velocities_mps[name] - drifts[name][1],
-        authorised,
-      )
-      for name, each in zip(self._observers, self._progress, strict=True)
-    ]
-
-  def _find_contacts(
-    self, physics: mjcf.Physics
-  ) -> tuple[tuple[str, str], ...]:
-    if not physics.data.ncon:
-      return ()
-    model, pairs = physics.model, set()
-    for contact in physics.data.contact[: physics.data.ncon]:
-      names = [
-        model.id2name(model.geom_bodyid[geom], 'body').split('/')[0]
-        for geom in (contact.geom1, contact.geom2)
-      ]
-      named = ('room' if name == 'world' else name for name in names)
-      pairs.add(tuple(sorted(named)))
-    return tuple(sorted(pairs))
 
   def positions_m(self, physics: mjcf.Physics) -> dict[str, np.ndarray]:
     """True position of every vehicle, (3,) world metres, by its name."""
@@ -283,9 +283,9 @@ class Broadcast(composer.Task):
 
   def _drifts(self) -> dict[str, tuple[np.ndarray, np.ndarray]]:
     """Drift and its velocity now, (3,) each, by vehicle."""
-    time_s, out = self._frame * timing.FRAME_S, {}
+    out = {}
     for name, wander in self._wanders.items():
-      place, rate, _ = wander.at(time_s)
+      place, rate, _ = wander.at(self._clock.time_s)
       out[name] = place[:3], rate[:3]
     return out
 
@@ -297,7 +297,7 @@ class Broadcast(composer.Task):
   @property
   def refusals(self) -> tuple[safety.Refusal, ...]:
     """The commands that the safety checks refused in this episode."""
-    return tuple(gate.refusal for gate in self._gates if gate.refusal)
+    return self._flights.refusals
 
   def get_reward(self, physics: mjcf.Physics) -> list[float]:
     """One reward for each observer, see the class."""
@@ -314,8 +314,8 @@ class Broadcast(composer.Task):
     del physics
     return (
       bool(self._contacts)
-      or self._frame >= timing.frames(self._parts.duration_s)
-      or all(each.done for each in self._progress)
+      or self._clock.frame >= timing.frames(self._parts.duration_s)
+      or self._flights.done
     )
 
   def action_spec(self, physics: mjcf.Physics) -> list[specs.BoundedArray]:

@@ -47,13 +47,13 @@ class Drift:
   drift_time_s: float = 1.0
 
   def __post_init__(self) -> None:
-    for name, (low, high) in {
+    limits = {
       'performer_drift_m': (0.0, 0.03),
       'observer_drift_m': (0.0, 0.03),
       'observer_yaw_drift_deg': (0.0, 5.0),
       'drift_time_s': (0.3, 10.0),
-    }.items():
-      checks.number(name, getattr(self, name), low, high, DriftError)
+    }
+    checks.settle_numbers(self, limits, DriftError)
 
   @property
   def near_m(self) -> float:

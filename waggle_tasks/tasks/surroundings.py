@@ -54,13 +54,13 @@ class Surroundings:
   occluder_mps: float = 0.5
 
   def __post_init__(self) -> None:
-    error = SurroundingsError
-    checks.integer('bystanders', self.bystanders, 0, MAX_BYSTANDERS, error)
-    if self.occluder_every_s != 0:
-      name = 'occluder_every_s'
-      checks.number(name, self.occluder_every_s, 5, 600, error)
-    checks.number('occluder_width_m', self.occluder_width_m, 0.02, 1, error)
-    checks.number('occluder_mps', self.occluder_mps, 0.1, 2, error)
+    limits = {
+      'bystanders': (0, MAX_BYSTANDERS),
+      'occluder_every_s': (0 if self.occluder_every_s == 0 else 5, 600),
+      'occluder_width_m': (0.02, 1),
+      'occluder_mps': (0.1, 2),
+    }
+    checks.settle_numbers(self, limits, SurroundingsError)
 
   def check(self, poses: Mapping[str, layouts.Pose], reach_m: float) -> None:
     """Refuses vehicles in the way.

@@ -1,0 +1,91 @@
+"""Whether the pauses of a dance hold what a receiver takes for a null."""
+
+from collections.abc import Sequence
+
+from waggle_tasks import errors, scenario
+from waggle_tasks.agents import config as config_lib
+from waggle_tasks.agents import receivers
+from waggle_tasks.protocol import timing
+
+# A rest is seen from one image to another, and a gesture at either end of it
+# is seen a little later than it begins.
+_EDGES_S = 2 * timing.FRAME_S
+
+
+class PauseError(errors.WaggleError):
+  """A pause that is too short for a receiver to see that it is one."""
+
+
+def needed_s(receiver_name: str) -> float | None:
+  """The shortest stillness between two motions that a receiver can confirm.
+
+  That is what it asks a null to last, and what it takes before to see that the
+  motion is over.
+
+  Args:
+    receiver_name: As `receivers.make` takes it.
+
+  Returns:
+    Seconds; None for a receiver that has no such number.
+  """
+  _, config = receivers.configured(receiver_name)
+  if not isinstance(config, config_lib.Config):
+    return None
+  end_s = 0.0
+  if isinstance(config.motion, config_lib.Motion):
+    end_s = config.motion.off_s
+  return round(config.stillness.hold_s + end_s + _EDGES_S, 6)
+
+
+def flaw(
+  scene: scenario.Scenario, receiver_name: str, spare_s: float = 0.0
+) -> str | None:
+  """Why a dance has too little stillness for a receiver, or None.
+
+  Args:
+    scene: The scenario.
+    receiver_name: As `receivers.make` takes it.
+    spare_s: How much more there must be than the least.
+  """
+  least_s = needed_s(receiver_name)
+  if least_s is None:
+    return None
+  _, config = receivers.configured(receiver_name)
+  hold_s, pauses = config.stillness.hold_s, scene.pauses
+  if pauses.initial_hover_s < hold_s - 1e-6:
+    return (
+      f'{pauses.initial_hover_s:.2f} s before START, of which a null of'
+      f' {receiver_name} takes {hold_s:.2f} s'
+    )
+  if config.framing.separators and pauses.pause_s < least_s + spare_s - 1e-6:
+    return (
+      f'{pauses.pause_s:.2f} s between gestures, of which a null of'
+      f' {receiver_name} takes {least_s:.2f} s'
+    )
+  return None
+
+
+def check(scenes: Sequence[scenario.Scenario], receiver_name: str) -> str:
+  """Refuses to fly what a receiver has no time to read anywhere.
+
+  Args:
+    scenes: What is to be flown.
+    receiver_name: As `receivers.make` takes it.
+
+  Returns:
+    A note for people where only some messages cannot be read; else nothing.
+
+  Raises:
+    PauseError: naming the pause, what is needed, and both numbers.
+  """
+  sent = [scene for scene in scenes if scene.sends_message]
+  flaws = [why for scene in sent if (why := flaw(scene, receiver_name))]
+  if not flaws:
+    return ''
+  rule = (
+    '`initial_hover_s`, and `settle_s` + `gap_s` + `lead_in_s`, must hold what'
+    f' the receiver takes for a null: got {flaws[0]}'
+  )
+  if len(flaws) == len(sent):
+    raise PauseError(rule)
+  return f'{len(flaws)} of {len(scenes)} scenarios cannot be read: {rule}'

@@ -1,0 +1,128 @@
+"""What the agreed vehicle can fly, and whether a dance asks for more.
+
+A controller without strength left flies beside the path, and what observers
+then see is another gesture. So a dance that asks for more is refused before it
+is flown.
+"""
+
+from collections.abc import Callable
+import functools
+import math
+
+import numpy as np
+
+from waggle_tasks import errors
+from waggle_tasks.protocol import gestures
+from waggle_tasks.protocol import schedule as schedule_lib
+
+# Along each world axis. Speed and tilt of the stock firmware: 20 degrees of
+# tilt give 3.57 m/s^2 sideways. Upwards is what 0.35 N of thrust leave a
+# vehicle of 27 g; downwards it can fall.
+MAX_SPEED_MPS = 1.0
+MAX_SIDEWAYS_MPS2 = 3.57
+MAX_UP_MPS2 = 3.15
+MAX_DOWN_MPS2 = 9.81
+# How far apart two paths may end and begin, and how fast.
+_JUMP_M, _REST_MPS = 0.005, 0.025
+# Peaks are sought this finely, and in no fewer moments.
+_STEP_S, _MOMENTS = 0.01, 400
+
+
+class LimitError(errors.WaggleError):
+  """A dance that the vehicle cannot fly."""
+
+
+def check_codebook(codebook: gestures.Codebook) -> None:
+  """Refuses gestures that the vehicle cannot fly.
+
+  Raises:
+    LimitError: naming the gesture, the rule and what it asks for.
+  """
+  for gesture in codebook.gestures:
+    _check_path(f'gesture {gesture.symbol}', gesture)
+
+
+def check_schedule(schedule: schedule_lib.Schedule) -> None:
+  """Refuses a dance that the vehicle cannot fly.
+
+  Raises:
+    LimitError: naming the path, the rule and what it asks for.
+  """
+  free_s, place_m = 0.0, np.zeros(3)
+  for number, slot in enumerate(schedule.slots, 1):
+    name = f'path {number} ({slot.gesture.symbol})'
+    if not slot.begin_s >= free_s - 1e-6:
+      raise LimitError(
+        f'`{name}` must begin when the one before is over, at {free_s:g} s:'
+        f' got {slot.begin_s:g} s'
+      )
+    _check_path(name, slot.gesture)
+    jump_m = math.dist(place_m, _whole(slot.gesture.motion(0.0)[0]))
+    if jump_m > _JUMP_M:
+      raise LimitError(
+        f'`{name}` must begin where the one before ended: got'
+        f' {jump_m:.3f} m from there'
+      )
+    free_s, place_m = slot.end_s, _whole(slot.gesture.end_m)
+
+
+def _check_path(name: str, path: schedule_lib.Path) -> None:
+  find = _known_peaks if isinstance(path, gestures.Gesture) else _peaks
+  speed, sideways, up, down, haste = find(path)
+  if not haste <= _REST_MPS:
+    raise LimitError(
+      f'`{name}` must begin and end at rest: got {haste:.2f} m/s there'
+    )
+  slower = max(
+    speed / MAX_SPEED_MPS,
+    *(
+      math.sqrt(asked / limit)
+      for asked, limit in (
+        (sideways, MAX_SIDEWAYS_MPS2), (up, MAX_UP_MPS2), (down, MAX_DOWN_MPS2)
+      )
+    ),
+  )  # fmt: skip
+  for rule, asked, limit, unit in (
+    ('accelerate upwards by at most', up, MAX_UP_MPS2, 'm/s^2'),
+    ('accelerate sideways by at most', sideways, MAX_SIDEWAYS_MPS2, 'm/s^2'),
+    ('accelerate downwards by at most', down, MAX_DOWN_MPS2, 'm/s^2'),
+    ('fly along an axis at no more than', speed, MAX_SPEED_MPS, 'm/s'),
+  ):
+    if not asked <= limit:
+      raise LimitError(
+        f'`{name}` must {rule} {limit:g} {unit}, which the vehicle'
+        f' has: got {asked:.2f} {unit} in {path.duration_s:g} s; in'
+        f' {path.duration_s * slower + 0.005:.2f} s it can be flown'
+      )
+
+
+def _peaks(path: schedule_lib.Path) -> tuple[float, ...]:
+  """The most that a path asks for.
+
+  Returns:
+    Speed, acceleration sideways, upwards and downwards, each along an axis,
+    and the speed at its ends.
+  """
+  count = max(_MOMENTS, math.ceil(path.duration_s / _STEP_S))
+  times_s = np.linspace(0.0, path.duration_s, count + 1)
+  moments = [[*map(_whole, path.motion(time_s))] for time_s in times_s]
+  places, rates, seconds = np.moveaxis(np.array(moments), 1, 0)  # (T, 3) each
+  # What it says of its speed, and what it does.
+  steps = np.abs(np.diff(places, axis=0)).max() / times_s[1]
+  return (
+    float(max(np.abs(rates).max(), steps)),
+    float(np.abs(seconds[:, ::2]).max()),
+    float(seconds[:, 1].max()),
+    float(-seconds[:, 1].min()),
+    float(np.abs(rates[[0, -1]]).max()),
+  )
+
+
+_known_peaks: Callable[[gestures.Gesture], tuple[float, ...]] = (
+  functools.lru_cache(_peaks)
+)
+
+
+def _whole(vector: np.ndarray) -> np.ndarray:
+  """(3,) right, up and away of a (2,) or (3,) vector."""
+  return np.append(vector, np.zeros(3 - len(vector)))

@@ -1,0 +1,121 @@
+"""The observers' commands: who asked, who may fly, and what became of it."""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from waggle_tasks.protocol import flight, reference
+from waggle_tasks.tasks import progress, safety
+
+
+class Flights:
+  """All observers' flights in one episode."""
+
+  def __init__(
+    self,
+    homes_m: Mapping[str, np.ndarray],
+    displacement_m: np.ndarray | None,
+    minimum_spacing_m: float,
+  ) -> None:
+    """Lets every observer wait at its place.
+
+    Args:
+      homes_m: By observer name, (3,) where it begins.
+      displacement_m: (3,) what is commanded to all, or None for nothing.
+      minimum_spacing_m: Smallest distance allowed between two vehicles.
+    """
+    self._minimum_spacing_m = minimum_spacing_m
+    self._gates: list[safety.Gate] = []
+    self._progress: list[progress.Progress] = []
+    self._requests: dict[str, flight.Flight] = {}
+    for name, home_m in homes_m.items():
+      hold = reference.Reference.hover(home_m)
+      self._gates.append(safety.Gate(name, hold))
+      target_m = None
+      if displacement_m is not None:
+        target_m = flight.goal_m(home_m, displacement_m)
+      self._progress.append(progress.Progress(home_m, target_m))
+
+  @property
+  def begun(self) -> bool:
+    """Whether anybody was given a command."""
+    judged = any(gate.plan or gate.refusal for gate in self._gates)
+    return judged or bool(self._requests)
+
+  @property
+  def done(self) -> bool:
+    """Whether everybody has arrived and held its place."""
+    return all(each.done for each in self._progress)
+
+  @property
+  def refusals(self) -> tuple[safety.Refusal, ...]:
+    """The commands that the safety checks refused."""
+    return tuple(gate.refusal for gate in self._gates if gate.refusal)
+
+  def follow(
+    self,
+    wanted: Sequence[reference.Reference],
+    positions_m: Mapping[str, np.ndarray],
+    drifts_m: Mapping[str, np.ndarray],
+    time_s: float,
+  ) -> dict[str, reference.Reference]:
+    """The references that controllers get for those that observers ask for.
+
+    Args:
+      wanted: Each observer's reference.
+      positions_m: By name, (3,) where every vehicle is.
+      drifts_m: By name, (3,) how far each is from its reference by drift.
+      time_s: Simulation time.
+    """
+    self._judge(wanted, positions_m, drifts_m, time_s)
+    return {
+      gate.name: gate.follow(each, time_s)
+      for gate, each in zip(self._gates, wanted, strict=True)
+    }
+
+  def _judge(
+    self,
+    wanted: Sequence[reference.Reference],
+    positions_m: Mapping[str, np.ndarray],
+    drifts_m: Mapping[str, np.ndarray],
+    time_s: float,
+  ) -> None:
+    """Accepts or refuses the commands that have waited for others."""
+    for gate, each in zip(self._gates, wanted, strict=True):
+      plan = gate.request(each, positions_m[gate.name], time_s)
+      if plan is not None:
+        self._requests.setdefault(gate.name, plan)
+    if not self._requests:
+      return
+    due = {
+      name: plan
+      for name, plan in self._requests.items()
+      if safety.is_due(plan, time_s)
+    }
+    plans = {gate.name: gate.plan for gate in self._gates if gate.plan}
+    others = {**positions_m, **plans, **self._requests}
+    reasons = safety.refuse(due, others, positions_m, self._minimum_spacing_m)
+    for gate, each in zip(self._gates, self._progress, strict=True):
+      if gate.name in due:
+        gate.judge(self._requests.pop(gate.name), reasons.get(gate.name))
+        # A displacement counts from where it was read, drift and all; its
+        # height is the agreed one.
+        each.shift(drifts_m[gate.name] * (1.0, 1.0, 0.0))
+
+  def update(
+    self,
+    positions_m: Mapping[str, np.ndarray],
+    velocities_mps: Mapping[str, np.ndarray],
+    authorised: bool,
+  ) -> list[float]:
+    """Takes one frame's truth, less the drift; returns everybody's reward.
+
+    Args:
+      positions_m: By name, (3,) true positions.
+      velocities_mps: By name, (3,) true velocities.
+      authorised: Whether a whole message has been flown.
+    """
+    return [
+      each.update(positions_m[gate.name], velocities_mps[gate.name], authorised)
+      for gate, each in zip(self._gates, self._progress, strict=True)
+    ]
