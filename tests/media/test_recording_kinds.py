@@ -1,0 +1,75 @@
+"""Every kind of recording of one dance gives its message."""
+
+import pathlib
+
+import pytest
+
+from waggle_tasks import scenario
+from waggle_tasks.experiments import reader, recordings
+
+kit = pytest.importorskip('recordings_kit', exc_type=ImportError)
+
+# Kinds that differ most from the simulator's pictures, in a fast language;
+# all of them in the paper's are many minutes.
+TELLING = (
+  'h264-crf23.mp4', 'gif-10hz.gif', 'h264-59p94hz.mp4',
+  'h264-1280x720-bars.mp4', 'h264-12p5hz.mp4',
+)  # fmt: skip
+
+
+@pytest.fixture(scope='module')
+def fast(
+  short: dict[str, object], tmp_path_factory: pytest.TempPathFactory
+) -> kit.Dance:
+  """A whole broadcast in the fast language."""
+  path = tmp_path_factory.mktemp('fast') / 'x.capture'
+  return kit.fly(path, scenario.Scenario(observers=1, **short))
+
+
+@pytest.fixture(scope='module')
+def papers(tmp_path_factory: pytest.TempPathFactory) -> kit.Dance:
+  """The paper's broadcast."""
+  path = tmp_path_factory.mktemp('papers') / 'x.capture'
+  return kit.fly(path, scenario.Scenario(observers=1))
+
+
+def messages(
+  kind: kit.Kind, dance: kit.Dance, folder: pathlib.Path
+) -> dict[str, str | None]:
+  """What each receiver reads in a recording, by its name."""
+  path = kind.write(dance, folder)
+  zoom = kind.focal_px / kit.FOCAL_PX
+  readers = [
+    reader.Reader(name, dance.codebook, zoom) for name in ('view_bank', 'klt')
+  ]
+  with recordings.Recording(path) as recording:
+    for image, time_s in recording.frames(recordings.Part()):
+      for each in readers:
+        each.take(image, time_s)
+  path.unlink()
+  return {each.name: each.message for each in readers}
+
+
+def wanted(kind: kit.Kind, dance: kit.Dance) -> dict[str, str | None]:
+  klt = None if kind.klt else dance.payload
+  return {'view_bank': dance.payload, 'klt': klt}
+
+
+def kinds(names: tuple[str, ...] = ()) -> object:
+  chosen = [k for k in kit.KINDS if not names or k.name in names]
+  return pytest.mark.parametrize('kind', chosen, ids=lambda kind: kind.name)
+
+
+@kinds(TELLING)
+def test_a_telling_kind_of_recording_gives_the_message(
+  kind: kit.Kind, fast: kit.Dance, tmp_path: pathlib.Path
+) -> None:
+  assert messages(kind, fast, tmp_path) == wanted(kind, fast)
+
+
+@pytest.mark.slow
+@kinds()
+def test_every_kind_of_recording_gives_the_message(
+  kind: kit.Kind, papers: kit.Dance, tmp_path: pathlib.Path
+) -> None:
+  assert messages(kind, papers, tmp_path) == wanted(kind, papers)
