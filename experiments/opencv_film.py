@@ -66,10 +66,13 @@ class Film:
 
   def pictures(self) -> Iterator[sources.Timed]:
     """See `Source`."""
+    first_s = None
     while self._capture.grab():
       time_s = self._capture.get(cv2.CAP_PROP_POS_MSEC) / 1e3
       if self._fps is not None:
         time_s = self._count / self._fps
+      first_s = time_s if first_s is None else first_s
+      time_s -= first_s
       self._timed = self._timed or time_s > 0
       self._count += 1
       yield time_s, self._image

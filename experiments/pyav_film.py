@@ -53,7 +53,9 @@ class Film:
     if self._stream is None:
       raise self._no_video()
     codec = self._stream.codec_context
-    sources.check_size(self._path, codec.width, codec.height)
+    # Before there is memory for one; some streams tell their size later.
+    if codec.width and codec.height:
+      sources.check_size(self._path, codec.width, codec.height)
     codec.options = _BOUND
     self._stream.thread_type = 'AUTO'
     self._check_fps()
@@ -117,18 +119,27 @@ class Film:
 
   def _decode(self) -> Iterator[sources.Timed]:
     """Pictures with their times since the first one."""
-    first, count = None, 0
+    first, rate_hz = None, self._fps or self._stream.average_rate
     for frame in self._frames():
-      ticks = frame.dts if frame.pts is None else frame.pts
-      if self._fps is not None:
-        self._last_s = count / self._fps
-      elif ticks is not None:
+      ticks = self._ticks(frame)
+      if ticks is not None:
         first = ticks if first is None else first
         self._last_s = float((ticks - first) * self._stream.time_base)
+      elif rate_hz:
+        # The last ones of an AVI, or all of a stream without times.
+        self._last_s = max(self._last_s + 1 / float(rate_hz), 0.0)
       else:
         continue
-      count += 1
       yield self._last_s, lambda frame=frame: self._image(frame)
+
+  def _ticks(self, frame: av.VideoFrame) -> int | None:
+    """When a picture is shown, in units of its stream; None when not known."""
+    if self._fps is not None:
+      return None
+    # AVI counts pictures in the order in which they are decoded.
+    if frame.pts is None or self._container.format.name == 'avi':
+      return frame.dts
+    return frame.pts
 
   def _frames(self) -> Iterator[av.VideoFrame]:
     """Whole pictures; what comes before the first one is no damage."""
@@ -165,7 +176,7 @@ class Film:
       raise self._damaged() from error
 
   def _damaged(self) -> sources.RecordingError:
-    if self._last_s < 0:
+    if self._last_s <= 0:
       return self._no_video()
     return sources.RecordingError(
       f'{self._path} is cut short or damaged at {self._last_s:.2f} s; decode'

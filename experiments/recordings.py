@@ -181,7 +181,7 @@ class Recording:
         yield time_s, picture
 
   def _check_length(self, part: Part) -> None:
-    """Refuses too long a part, by what the container announces at the latest."""
+    """Refuses too long a part before an hour of it is read."""
     end_s = self.length_s if part.end_s is None else part.end_s
     if end_s - part.start_s > MAX_LENGTH_S:
       self._refuse_length(end_s - part.start_s)
@@ -240,7 +240,7 @@ def _check_name(path: pathlib.Path) -> None:
     str(path).encode()
   except UnicodeEncodeError:
     raise RecordingError(
-      f'the name of a recording must be UTF-8: got {ascii(str(path))}'
+      f'the name of a recording must be UTF-8: got {str(path)!a}'
     ) from None
 
 

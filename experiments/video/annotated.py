@@ -40,7 +40,7 @@ class Film:
       str(path).encode()
     except UnicodeEncodeError:
       raise layout.VideoError(
-        f'`annotate` must be a name in UTF-8: got {ascii(str(path))}'
+        f'`annotate` must be a name in UTF-8: got {str(path)!a}'
       ) from None
     if path.exists() or not path.parent.is_dir():
       raise layout.VideoError(

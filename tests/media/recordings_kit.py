@@ -223,6 +223,10 @@ def _crf(value: int) -> tuple[tuple[str, str], ...]:
 _BY_BITS = (('b', '1500k'),)
 KINDS = (
   *(Kind(f'h264-crf{crf}.mp4', options=_crf(crf)) for crf in (18, 23, 28, 32)),
+  # Better encoders repeat more of a still picture.
+  Kind(
+    'h264-crf23-medium.mp4', options=(('crf', '23'), ('preset', 'medium'))
+  ),
   Kind('hevc.mp4', 'libx265', _crf(28)),
   Kind('mjpeg.avi', 'mjpeg', (('q', '3'),)),
   Kind('vp8.webm', 'libvpx', _BY_BITS),
