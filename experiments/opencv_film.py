@@ -58,7 +58,8 @@ class Film:
     known = count > 0 and rate_hz > 0
     self.length_s = count / rate_hz if known and fps is None else math.nan
     self._count, self._timed = 0, False
-    self._same: np.ndarray | None = None  # What all pictures are like so far.
+    self._first: np.ndarray | None = None  # The first picture that was asked.
+    self._differs = False  # Whether another one is unlike it.
 
   def close(self) -> None:
     """Lets go of the file."""
@@ -76,6 +77,9 @@ class Film:
       self._timed = self._timed or time_s > 0
       self._count += 1
       yield time_s, self._image
+
+  def check(self) -> None:
+    """See `Source`."""
     if not self._count:
       raise sources.RecordingError(
         f'{self._path} gives no picture: it is damaged, or of a kind that'
@@ -83,7 +87,7 @@ class Film:
       )
     if self._count > 1 and not self._timed:
       raise sources.no_times(self._path)
-    if self._same is not None:
+    if self._first is not None and not self._differs:
       # OpenCV gives left-over memory, again and again, for such a picture.
       raise sources.RecordingError(
         f'{self._path} gives one picture and no other: nothing happens in it,'
@@ -114,9 +118,9 @@ class Film:
       raise sources.RecordingError(
         f'{self._path} is damaged: it has a picture that cannot be decoded'
       )
-    if self._count == 1:
-      self._same = image.copy()
-    elif self._same is not None and not np.array_equal(image, self._same):
-      self._same = None
+    if self._first is None:
+      self._first = image.copy()
+    elif not self._differs:
+      self._differs = not np.array_equal(image, self._first)
     image = cv2.cvtColor(image, cv2.COLOR_BGR2RGB)
     return sources.widened(image, self.width)

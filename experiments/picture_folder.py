@@ -58,6 +58,9 @@ class PictureFolder:
       time_s = (number - self._numbers[0]) / self._fps
       yield time_s, lambda number=number: _read(self._paths[number])
 
+  def check(self) -> None:
+    """See `Source`; whatever is wrong was said at once."""
+
   def missing(self) -> str:
     """See `Source`: a folder ends where it ends."""
     return ''

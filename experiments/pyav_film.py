@@ -77,6 +77,9 @@ class Film:
     """See `Source`."""
     return itertools.chain([self._first], self._timed)
 
+  def check(self) -> None:
+    """See `Source`; whatever is wrong was said at once."""
+
   def missing(self) -> str:
     """See `Source`: other streams may be longer than the pictures."""
     announced = self._container.duration

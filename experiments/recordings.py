@@ -5,14 +5,18 @@ one clear error.
 """
 
 from collections.abc import Iterator
-import dataclasses
 import math
 import pathlib
 
 import cv2
 import numpy as np
 
-from waggle_tasks.experiments import opencv_film, picture_folder, sources
+from waggle_tasks.experiments import (
+  opencv_film,
+  picture_folder,
+  recording_part,
+  sources,
+)
 from waggle_tasks.protocol import checks
 
 MAX_LENGTH_S = 3600.0
@@ -21,46 +25,8 @@ _SLACK_S = 1.0  # A container may announce so much more than it holds.
 _NEAR_S = 0.0095
 _MOST_STUCK = 5000  # Pictures in a row without a time of their own.
 
+Part = recording_part.Part
 RecordingError = sources.RecordingError
-
-
-@dataclasses.dataclass(frozen=True)
-class Part:
-  """Which part of a recording is read.
-
-  Attributes:
-    start_s: First moment, in s since its first picture.
-    end_s: Last moment, or None for all there is.
-    roi: Left, top, width and height of the part of the picture, in pixels as
-      it is shown; None for all of it.
-    anchor_px: Where the target hovers first, x right and y down in the whole
-      picture; None for the middle of the part.
-    speed: Seconds of the dance in a second of the recording.
-  """
-
-  start_s: float = 0.0
-  end_s: float | None = None
-  roi: tuple[int, int, int, int] | None = None
-  anchor_px: tuple[float, float] | None = None
-  speed: float = 1.0
-
-  def __post_init__(self) -> None:
-    checks.number('start', self.start_s, 0.0, 1e6, RecordingError)
-    checks.number('speed', self.speed, 0.01, 100.0, RecordingError)
-    if self.end_s is not None:
-      checks.number('end', self.end_s, 0.0, 1e6, RecordingError)
-      if self.end_s <= self.start_s:
-        raise RecordingError(
-          f'`end` must be later than `start`, {self.start_s:g} s:'
-          f' got {self.end_s:g} s'
-        )
-    if self.roi is not None and not (
-      min(self.roi[:2]) >= 0 and min(self.roi[2:]) >= 16
-    ):
-      raise RecordingError(
-        '`roi` must be left, top, width, height in pixels, at least 16 wide'
-        f' and high: got {",".join(map(str, self.roi))}'
-      )
 
 
 class Recording:
@@ -111,8 +77,8 @@ class Recording:
       RecordingError: if the part lies outside, is too long, or the recording
         is cut short or damaged or has no times.
     """
-    rows, columns = self._crop(part)
-    border = self._border(part)
+    rows, columns = part.crop(self.width, self.height)
+    border = part.border(rows, columns)
     self._check_length(part)
     count = 0
     for time_s, picture in self._times(part):
@@ -131,34 +97,9 @@ class Recording:
 
   def offset_px(self, part: Part) -> np.ndarray:  # (2,)
     """What takes a place in a picture of `frames` to the whole picture."""
-    rows, columns = self._crop(part)
-    top, _, left, _ = self._border(part)
+    rows, columns = part.crop(self.width, self.height)
+    top, _, left, _ = part.border(rows, columns)
     return np.array([columns.start - left, rows.start - top], float)
-
-  def _crop(self, part: Part) -> tuple[slice, slice]:
-    if part.roi is None:
-      return slice(0, self.height), slice(0, self.width)
-    left, top, width, height = part.roi
-    if left + width > self.width or top + height > self.height:
-      raise RecordingError(
-        f'`roi` must lie in the picture, {self.width} x {self.height}:'
-        f' got {",".join(map(str, part.roi))}'
-      )
-    return slice(top, top + height), slice(left, left + width)
-
-  def _border(self, part: Part) -> tuple[int, int, int, int]:
-    """What to add at the top, bottom, left and right to centre the anchor."""
-    if part.anchor_px is None:
-      return 0, 0, 0, 0
-    rows, columns = self._crop(part)
-    x, y = part.anchor_px
-    if not (columns.start <= x < columns.stop and rows.start <= y < rows.stop):
-      raise RecordingError(
-        f'`anchor` must lie in the part that is read: got {x:g},{y:g}'
-      )
-    right = round(2 * (x - columns.start) - (columns.stop - columns.start))
-    bottom = round(2 * (y - rows.start) - (rows.stop - rows.start))
-    return max(-bottom, 0), max(bottom, 0), max(-right, 0), max(right, 0)
 
   def _times(self, part: Part) -> Iterator[sources.Timed]:
     """The pictures of a part, those left out that are too near to another."""
@@ -194,6 +135,7 @@ class Recording:
 
   def _check_end(self, part: Part, count: int) -> None:
     """Refuses a recording that ended too early; notes one that seems to."""
+    self._source.check()
     reached_s, announced_s = self._reached_s, self.length_s
     if not count and reached_s < part.start_s:
       longest_s = np.fmax(reached_s, announced_s)
@@ -208,7 +150,10 @@ class Recording:
         ' without times need --fps'
       )
     wanted_s = announced_s if part.end_s is None else part.end_s
-    if not reached_s < min(wanted_s, announced_s) - _SLACK_S:
+    # Nothing is less than what is not announced.
+    if not (
+      reached_s < announced_s - _SLACK_S and reached_s < wanted_s - _SLACK_S
+    ):
       return
     said = (
       f'{self._path} announces {announced_s:.2f} s, and its pictures end at'

@@ -59,6 +59,14 @@ class Source(Protocol):
     """
     ...
 
+  def check(self) -> None:
+    """Looks back when as much was read as was wanted.
+
+    Raises:
+      RecordingError: if what was given cannot be what was filmed.
+    """
+    ...
+
   def missing(self) -> str:
     """Why less may have been read than there was; empty when all was.
 

@@ -17,6 +17,7 @@ import numpy as np
 import pytest
 
 from waggle_tasks.experiments import recordings
+from waggle_tasks.experiments.video import encoders
 
 av = pytest.importorskip('av')
 small = pytest.importorskip('small_films', exc_type=ImportError)
@@ -152,8 +153,10 @@ def test_interlaced_pictures_are_right(
 def test_what_opencv_cannot_decode_names_the_line_that_mends_it(
   kind: dict[str, object], tmp_path: pathlib.Path
 ) -> None:
-  with pytest.raises(recordings.RecordingError, match=MENDS):
-    read(made(tmp_path, **kind))
+  path = made(tmp_path, **kind)
+  for part in (Part(), Part(start_s=1.0), Part(end_s=2.0)):
+    with pytest.raises(recordings.RecordingError, match=MENDS):
+      read(path, part)
 
 
 def test_av1_is_read(tmp_path: pathlib.Path) -> None:
@@ -461,6 +464,29 @@ def test_a_name_that_is_no_utf8_is_refused_in_a_line(
     (said,) = child.stderr.splitlines()
     assert 'UTF-8' in said
     assert 'lat' in said
+
+
+def test_a_film_without_an_announced_length_is_bounded_all_the_same(
+  tmp_path: pathlib.Path,
+) -> None:
+  path = made(tmp_path, 'x.h264', container='h264')
+  assert len(read(path, Part(end_s=9.0), fps=25.0)[1]) == 75
+  with pytest.raises(recordings.RecordingError, match='at most 3600 s long'):
+    read(path, fps=0.01)
+
+
+@pytest.mark.parametrize('name', ['x.webm', 'x.mp4'])
+def test_a_video_goes_to_a_folder_with_a_colon_in_its_name(
+  name: str, monkeypatch: pytest.MonkeyPatch, tmp_path: pathlib.Path
+) -> None:
+  monkeypatch.chdir(tmp_path)
+  path = pathlib.Path('18:30', name)
+  path.parent.mkdir()
+  encoder = encoders.make(path, (96, 64), 25)
+  for image in small.pictures():
+    encoder.write(image)
+  encoder.close()
+  assert_whole(path)
 
 
 def test_a_picture_of_another_size_is_refused(tmp_path: pathlib.Path) -> None:
