@@ -8,7 +8,7 @@ import setuptools
 HERE = pathlib.Path(__file__).parent
 FOLDERS = ('entities', 'arenas', 'agents', 'experiments')
 
-VIDEO = ('av>=14',)
+VIDEO = ('av>=17.1',)
 CLUSTER = ('distributed>=2025.1',)
 ANALYSIS = ('matplotlib>=3.9',)
 TEST = (

@@ -7,8 +7,12 @@ import pathlib
 
 import av
 import numpy as np
+from packaging import version
 
 from waggle_tasks.experiments import sources
+
+if version.parse(av.__version__) < version.parse('17.1'):
+  raise ImportError('PyAV before 17.1 crashes on Flash videos')
 
 _SLACK_S = 1.0  # A container may announce so much more than it holds.
 _NO_TIMES = 0x80  # FFmpeg's flag of formats that hold pictures alone.
@@ -188,7 +192,8 @@ class Film:
 
   def _image(self, frame: av.VideoFrame) -> np.ndarray:
     """The picture as it is shown."""
-    image = self._reformatter.reformat(frame, format='rgb24').to_ndarray()
+    image = self._reformatter.reformat(frame, format='rgb24', threads=1)
+    image = image.to_ndarray()
     aspect = self._stream.sample_aspect_ratio
     image = sources.widened(image, sources.shown_width(frame.width, aspect))
     matrix = frame.side_data.get('DISPLAYMATRIX')
