@@ -15,6 +15,7 @@ if version.parse(av.__version__) < version.parse('17.1'):
   raise ImportError('PyAV before 17.1 crashes on Flash videos')
 
 _SLACK_S = 1.0  # A container may announce so much more than it holds.
+_MARGIN_S = 0.5  # What is given up before a damage.
 _NO_TIMES = 0x80  # FFmpeg's flag of formats that hold pictures alone.
 # Files only: a playlist must not reach into the network.
 _OPTIONS = {'protocol_whitelist': 'file'}
@@ -185,9 +186,11 @@ class Film:
   def _damaged(self) -> sources.RecordingError:
     if self._last_s <= 0:
       return self._no_video()
+    # Reading ends with the first picture after the end, so one must be left.
+    end_s = max(self._last_s - _MARGIN_S, self._last_s / 2)
     return sources.RecordingError(
       f'{self._path} is cut short or damaged at {self._last_s:.2f} s; decode'
-      f' what is before with --end={math.floor(100 * self._last_s) / 100:.2f}'
+      f' what is before with --end={end_s:.2f}'
     )
 
   def _image(self, frame: av.VideoFrame) -> np.ndarray:

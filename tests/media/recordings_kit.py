@@ -120,7 +120,8 @@ class Kind:
     change: What happens to each picture.
     retime: What happens to the times, in place of a constant rate.
     turned: Whether the picture lies on its side and the container says so.
-    focal_px: Focal length of the changed picture.
+    aspect: Width of a pixel over its height; None when nothing says.
+    focal_px: Focal length of the changed picture, as it is shown.
     klt: Why `klt`, with the paper's thresholds, need not read it.
   """
 
@@ -131,6 +132,7 @@ class Kind:
   change: Change = _same
   retime: Callable[[Timed], Timed] | None = None
   turned: bool = False
+  aspect: fractions.Fraction | None = None
   focal_px: float = FOCAL_PX
   klt: str = ''
 
@@ -150,6 +152,8 @@ class Kind:
       stream.height, stream.width = shape[:2]
       stream.pix_fmt = _PIXELS.get(self.codec, 'yuv420p')
       stream.options = _FAST.get(self.codec, {}) | dict(self.options)
+      if self.aspect:
+        stream.codec_context.sample_aspect_ratio = self.aspect
       stream.time_base = stream.codec_context.time_base = clock
       for image, time_s in itertools.chain([first], images):
         changed = np.ascontiguousarray(self.change(image))
@@ -193,8 +197,8 @@ def _barred(width: int, height: int) -> Change:
 
 
 def _wide(image: np.ndarray) -> np.ndarray:
-  """1920 x 1080 without bars: three times the image, top and bottom cut."""
-  return cv2.resize(image[60:420], (1920, 1080), None, 0, 0)
+  """All of the image in 1920 x 1080, its pixels higher than wide."""
+  return cv2.resize(image, (1920, 1080), None, 0, 0)
 
 
 def _square(image: np.ndarray) -> np.ndarray:
@@ -244,7 +248,10 @@ KINDS = (
     'h264-1920x1080-bars.mp4', change=_barred(1920, 1080),
     focal_px=FOCAL_PX * 2.25,
   ),
-  Kind('h264-1920x1080.mp4', change=_wide, focal_px=FOCAL_PX * 3),
+  Kind(
+    'h264-1920x1080-narrow-pixels.mp4', change=_wide,
+    aspect=fractions.Fraction(3, 4), focal_px=FOCAL_PX * 2.25,
+  ),
   Kind('h264-480x480.mp4', change=_square),
   Kind('h264-dark.mp4', change=_lit(0.3, 0)),
   Kind('h264-bright.mp4', change=_lit(1.4, 40)),

@@ -466,6 +466,30 @@ def test_a_name_that_is_no_utf8_is_refused_in_a_line(
     assert 'lat' in said
 
 
+@pytest.mark.parametrize('name', ['x.ts', 'x.mp4'])
+def test_what_is_before_a_damage_can_be_read(
+  name: str, tmp_path: pathlib.Path
+) -> None:
+  path = made(tmp_path, name, options={'g': '5', 'bf': '0'})
+  data = bytearray(path.read_bytes())
+  middle = len(data) // 2
+  data[middle : middle + len(data) // 8] = bytes(len(data) // 8)
+  path.write_bytes(data)
+  with pytest.raises(recordings.RecordingError) as caught:
+    read(path)
+  assert 'cut short or damaged' in str(caught.value)
+  end_s = float(str(caught.value).rpartition('--end=')[2])
+  _, times_s, _ = read(path, Part(end_s=end_s))
+  assert times_s[-1] == pytest.approx(end_s, abs=0.05)
+
+
+def test_a_transport_stream_may_begin_anywhere(tmp_path: pathlib.Path) -> None:
+  path = made(tmp_path, 'x.ts', options={'g': '10'})
+  data = path.read_bytes()
+  path.write_bytes(data[len(data) // 188 // 3 * 188 :])
+  assert 30 < len(read(path)[1]) < 75
+
+
 def test_a_film_without_an_announced_length_is_bounded_all_the_same(
   tmp_path: pathlib.Path,
 ) -> None:
