@@ -8,14 +8,14 @@ import setuptools
 HERE = pathlib.Path(__file__).parent
 FOLDERS = ('entities', 'arenas', 'agents', 'experiments')
 
-VIDEO = ('av>=14',)
+VIDEO = ('av>=17.1',)
 CLUSTER = ('distributed>=2025.1',)
 ANALYSIS = ('matplotlib>=3.9',)
 TEST = (
   'pytest>=8', 'pytest-xdist>=3', 'hypothesis>=6', 'setuptools>=77', *CLUSTER,
-  *ANALYSIS,
+  *ANALYSIS, *VIDEO,
 )  # fmt: skip
-DEV = (*TEST, *VIDEO, 'ruff>=0.14', 'build>=1')
+DEV = (*TEST, 'ruff>=0.14', 'build>=1')
 
 
 def version() -> str:

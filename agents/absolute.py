@@ -59,8 +59,11 @@ class AbsoluteTracker:
     if departure is not None:
       self.ghost = departure.ghost
       self.anchor_px = departure.ghost.anchor_px
-      self._follower = Follower(self._config, departure)
-      return [self._follower.follow(grey, at) for at, grey in departure.greys]
+      follower = self._follower = Follower(self._config, departure)
+      return [
+        follower.lose(at) if grey is None else follower.follow(grey, at)
+        for at, grey in departure.greys
+      ]
     # Somewhere in the middle: all that is known before it moves.
     middle_px = np.array([image.shape[1], image.shape[0]]) / 2
     visible = self._hover.visible
@@ -86,6 +89,8 @@ class Follower:
     self._detector = departure.detector
     self._speckled = departure.speckled
     self._background = departure.background
+    height, width = departure.background.grey.shape
+    self._size = width, height
     self._ghost = departure.ghost
     left, top, right, bottom = departure.ghost.box
     self._home = slice(top, bottom), slice(left, right)
@@ -112,14 +117,13 @@ class Follower:
       image = difference.despeckled(image)
     aligned = self._alignment.step(image)
     if aligned is None:
-      return self._lose(time_s, 0.0, False)
+      return self.lose(time_s, outside=self._at_edge())
     if self._alignment.moving and self._background.slack is None:
       self._background.loosen(self._config.slack_px)
     return self.follow(aligned, time_s)
 
   def follow(self, image: np.ndarray, time_s: float) -> klt.Track:
     """Takes an aligned image, (H, W, 3) uint8 RGB or (H, W) uint8 grey."""
-    self._size = image.shape[1], image.shape[0]
     gate, config = self._gate(), self._config
     weights = self._weights(image, gate, config.box_sigmas)
     weights = self._mine(weights, gate)
@@ -131,7 +135,7 @@ class Follower:
     if not config.lost_share <= share <= config.most_share:
       found = None if outside else self._search(image)
       if found is None:
-        return self._lose(time_s, min(share, 1.0), outside)
+        return self.lose(time_s, min(share, 1.0), outside)
       share, centre_px = found
     self._repair(image, gate)
     self._centre_px, self._seen_s = centre_px, time_s
@@ -148,7 +152,16 @@ class Follower:
       width_px=self._ghost.width_px,
     )  # fmt: skip
 
-  def _lose(self, time_s: float, quality: float, outside: bool) -> klt.Track:
+  def lose(
+    self, time_s: float, quality: float = 0.0, outside: bool = False
+  ) -> klt.Track:
+    """Notes an image in which it is not seen.
+
+    Args:
+      time_s: Its time.
+      quality: What share of it was seen.
+      outside: Whether it may be out of the picture.
+    """
     self._recent.clear()
     return klt.Track(time_s, self._centre_px, 0.0, 0, quality, False, outside)
 

@@ -13,7 +13,9 @@ import numpy as np
 from waggle_tasks.agents import config as config_lib
 from waggle_tasks.agents import difference
 
-_LAG_S = 0.16  # So long a ghost must not change...
+# A ghost must not change for so long, or a little longer: what moves may be
+# back where it was...
+_LAG_S = 0.16
 _MAX_CHANGE = 0.2  # ...but for this share.
 # A target and its ghost differ from the background about equally.
 _MIN_BALANCE = 0.25
@@ -43,7 +45,7 @@ class Separation:
   """Watches a target leave its ghost.
 
   Attributes:
-    greys: Times and images, (H, W) uint8, so far.
+    greys: Times and images, (H, W) uint8, so far; None for no image of it.
   """
 
   def __init__(
@@ -68,16 +70,20 @@ class Separation:
     self._detector = detector
     self._background = background
     self._config = config
-    self.greys: list[tuple[float, np.ndarray]] = []
+    self.greys: list[tuple[float, np.ndarray | None]] = []
 
-  def add(self, grey: np.ndarray, time_s: float) -> None:
-    """Takes an image, (H, W) uint8."""
+  def add(self, grey: np.ndarray | None, time_s: float) -> None:
+    """Takes an image, (H, W) uint8, or notes that there was none."""
     self.greys.append((time_s, grey))
 
   def find(self) -> Ghost | None:
     """The ghost, once the target has left it in the last image."""
     now_s, grey = self.greys[-1]
-    older = [each for at_s, each in self.greys if now_s - at_s > _LAG_S - 1e-6]
+    older = [
+      each
+      for at_s, each in self.greys
+      if each is not None and _LAG_S - 1e-6 < now_s - at_s < 2 * _LAG_S + 1e-6
+    ]
     if not older:
       return None
     known, grey_before = self._background, older[-1]
