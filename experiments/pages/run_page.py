@@ -9,7 +9,7 @@ import pathlib
 
 from waggle_tasks.agents import config as config_lib
 from waggle_tasks.agents import receivers
-from waggle_tasks.experiments import archive, palette, story
+from waggle_tasks.experiments import archive, changes, palette, story
 from waggle_tasks.experiments.pages import (
   document,
   flights,
@@ -24,6 +24,12 @@ _VIDEOS = {'.webm': 'video/webm', '.mp4': 'video/mp4'}
 _DATA = (
   'config.json', 'events.jsonl', 'result.json', 'provenance.json',
   archive.TRACES, archive.POSITIONS,
+)  # fmt: skip
+
+# Of a scenario, what its one line says anyhow.
+_TOLD = (
+  'control', 'payload', 'heading_step_deg', 'distance_unit_m', 'observers',
+  'layout', 'distance_m', 'jitter_m', 'seed',
 )  # fmt: skip
 
 tag = markup.tag
@@ -104,7 +110,19 @@ def _head(run: archive.Run) -> markup.Markup:
     tag('h1', verdict, ' ', words),
     tag('p', *chips, class_='chips'),
     tag('p', describe(run), class_='faint'),
+    _changes(run),
   )
+
+
+def _changes(run: archive.Run) -> markup.Markup | None:
+  """What is unlike the default: disturbances, looks, languages."""
+  told = _TOLD
+  if run.scenario['layout'] == 'arc':
+    told = (*told, 'half_span_deg')
+  found = changes.among(run.scenario, told)
+  if not found:
+    return None
+  return tag('p', tag('b', 'Changed: '), ', '.join(found), class_='changed')
 
 
 def describe(run: archive.Run) -> str:

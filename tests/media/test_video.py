@@ -87,13 +87,13 @@ def test_the_video_lasts_as_long_as_the_run_at_its_rate(
     [time_s for time_s, _ in pictures], np.arange(len(pictures)) / 5, atol=1e-3
   )
   assert pictures[-1][0] == pytest.approx(end_s, abs=0.2)
-  plan = layout.plan(2, 0.5)
+  plan = layout.plan(2, 0.5, 1)
   assert pictures[0][1].shape == (plan.height, plan.width, 3)
 
 
 def test_an_observers_picture_is_what_it_sees(recorded: object) -> None:
   pictures = frames(recorded.folder / 'composite.webm')
-  seeing, blind = layout.plan(2, 0.5).observers
+  seeing, blind = layout.plan(2, 0.5, 1).observers
   for _, picture in pictures[::50]:
     assert picture[blind.slices].mean() < 20  # Black, but for its marks.
     assert picture[seeing.slices].mean() > 80
@@ -107,7 +107,7 @@ def colour_share(picture: np.ndarray, colour: str) -> float:
 
 def test_symbols_and_track_appear_as_they_are_read(recorded: object) -> None:
   pictures = frames(recorded.folder / 'composite.webm')
-  plan = layout.plan(2, 0.5)
+  plan = layout.plan(2, 0.5, 1)
   eye = plan.observers[0]
   start = next(
     e for e in recorded.rollout.events['observer_1']
