@@ -15,6 +15,7 @@ from waggle_tasks.experiments.pages import (
   flights,
   gesture_plots,
   markup,
+  room,
   signals,
   timelines,
 )
@@ -88,7 +89,12 @@ def _facts(run: archive.Run) -> dict[str, object]:
     for name, events in run.events.items()
   }
   sent = [[s.begin_s, s.end_s, str(s.symbol)] for s in run.sent]
-  return {'end': run.end_s, 'sent': sent, 'readings': readings}
+  return {
+    'end': run.end_s,
+    'sent': sent,
+    'readings': readings,
+    'ways': room.ways(run),
+  }
 
 
 def _head(run: archive.Run) -> markup.Markup:
@@ -183,7 +189,7 @@ def _film(run: archive.Run, films: Sequence[str]) -> markup.Markup:
     video or missing,
     choice,
     tag('p', tag('output', id='now'), class_='now'),
-    timelines.draw(run),
+    tag('div', timelines.draw(run), class_='scroll'),
     tag('p', hint, class_='faint screen'),
     _patterns(),
     id='film',
@@ -222,13 +228,25 @@ def _flights(run: archive.Run) -> markup.Markup:
   return tag(
     'section',
     tag('h2', 'Flights'),
+    tag('div', room.plan(run), room.front(run), class_='pair'),
     tag(
-      'div',
-      flights.plan(run),
-      tag('div', flights.displacements(run), flights.distances(run)),
-      class_='pair',
+      'p',
+      'Marked is where everyone is at the time of the cursor above, with the'
+      ' last 8 s of its way.',
+      class_='faint screen',
     ),
+    tag('div', flights.displacements(run), flights.distances(run)),
+    *_dance(run),
   )
+
+
+def _dance(run: archive.Run) -> list[markup.Markup]:
+  """Every gesture as it was flown."""
+  drawn = room.dance(run)
+  if drawn is None:
+    return []
+  title = 'What the performer flew, from the front; world x and height in m'
+  return [tag('h3', title), drawn]
 
 
 def _observer(
@@ -239,7 +257,7 @@ def _observer(
   events = timelines.motions(run.events[name])
   plots = tag('p', 'No track was kept.', class_='faint')
   if trace is not None and len(trace.times_s):
-    plots = signals.draw(trace, run.end_s, config)
+    plots = tag('div', signals.draw(trace, run.end_s, config), class_='scroll')
   return tag(
     'section',
     tag(

@@ -67,10 +67,12 @@ def _vehicle(
   """Draws a ring around a vehicle, which is small, and its number."""
   turns = np.linspace(0.0, 2 * np.pi, 25)
   radius, size = plan.px(_RING), plan.px(_SIZE - 2)
-  ring = np.column_stack([np.cos(turns), np.sin(turns)]) * radius
+  ring = np.column_stack(
+    [x + radius * np.cos(turns), y + radius * np.sin(turns)]
+  )
   number = name.rpartition('_')[2] if name.startswith('observer') else ''
   colour = palette.WHITE if number else palette.ORANGE
-  pen.outline(picture, ring + (x, y), colour, plan.px(1))
+  pen.outline(picture, ring, colour, plan.px(1))
   if number:
     width, gap = pen.chip_width(number, size), plan.px(2)
     left = min(max(round(x) - width // 2, 0), picture.shape[1] - width)
