@@ -17,7 +17,7 @@ HOWS = {
   PART: 'counts of a part fit into those of the whole',
   PATTERN: 'what a pattern finds is the same in both',
   COPY: 'every line is in another block too',
-  SUM: 'it is the sum of all other blocks of its document',
+  SUM: 'it is the sum of the other blocks of its document',
   UNCHECKED: 'nothing is compared',
 }
 
@@ -31,7 +31,8 @@ class Claim:
     how: One of `HOWS`.
     command: Arguments of `waggle` that make a part of it; may be empty.
     table: Number of the table in the block, from 0; None for any that fits.
-    detail: A pattern, another block, or why nothing is compared.
+    detail: A pattern; another block; blocks, and titles of tables, that are
+      left out of a sum; or why nothing is compared.
   """
 
   block: str
@@ -160,7 +161,10 @@ CLAIMS = {
   'decoys-noise': _sweep(
     'decoys-noise', 1, '--noise_sigma=10', how=PART, **_DECOYS
   ),
-  'together': Claim('together', SUM),
+  # Of the receiver that it speaks of: the tables of others are left out.
+  'together': Claim(
+    'together', SUM, detail='klt-map klt view_bank:max_repeated=1'
+  ),
   'frozen': _sweep(
     'living-cameras', 2, '--freeze_length_s=600', observers=3, table=1,
     freeze_s='94', noise_sigma='5',

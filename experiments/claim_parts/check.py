@@ -49,7 +49,7 @@ def claim(
     other = library.blocks.get(each.detail, documents.block_of(''))
     return compare.text(block, other)
   if each.how == book.SUM:
-    return [_sum(block, library)]
+    return [_sum(block, library, each.detail.split())]
   with tempfile.TemporaryDirectory() as home:
     folder = pathlib.Path(home, 'out')
     printed = _run(each.command, folder, workers)
@@ -91,12 +91,15 @@ def _run(
   return documents.block_of(child.stdout)
 
 
-def _sum(block: documents.Block, library: documents.Library) -> finding.Finding:
-  """A total beside the exposures of all other blocks of its document."""
+def _sum(
+  block: documents.Block, library: documents.Library, without: Sequence[str]
+) -> finding.Finding:
+  """A total beside the exposures of the other blocks of its document."""
   counts = [
-    arithmetic.exposures(each)
-    for each in library.blocks.values()
+    arithmetic.exposures(each, without)
+    for name, each in library.blocks.items()
     if each.document == block.document and each != block
+    if name not in without
   ]
   says = '{}/{}'.format(*arithmetic.exposures(block))
   made = f'{sum(a for a, _ in counts)}/{sum(b for _, b in counts)}'
