@@ -85,13 +85,10 @@ class Block:
 
 
 def _fits(line: str, spans: Sequence[tuple[int, int]]) -> bool:
-  """Whether a line is a row of a table: nothing stands between its columns."""
-  gaps = itertools.pairwise(spans)
-  return (
-    bool(line)
-    and not any(line[left:right].strip() for (_, left), (right, _) in gaps)
-    and not line[spans[-1][1] :].strip()
-  )
+  """Whether a line is a row of a table: words stand in its columns alone."""
+  outside = [line[a:b] for (_, a), (b, _) in itertools.pairwise(spans)]
+  outside.append(line[spans[-1][1] :])
+  return any(_cells(line, spans)[1:]) and not ''.join(outside).strip()
 
 
 def _cells(line: str, spans: Sequence[tuple[int, int]]) -> tuple[str, ...]:
