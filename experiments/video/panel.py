@@ -248,7 +248,9 @@ class Strip:
     left = max(column - width, free)
     if left <= column and left + width <= self._plan.strip.width:
       return pen.chip(self._canvas, label, left, middle, size, colour)
-    bar = layout.Rect(column, middle - plan.px(8), plan.px(3), plan.px(16))
+    bar = layout.Rect(
+      max(column, free), middle - plan.px(8), plan.px(3), plan.px(16)
+    )
     pen.fill(self._canvas, bar, colour)
     return bar.right
 
