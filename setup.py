@@ -12,8 +12,8 @@ VIDEO = ('av>=14',)
 CLUSTER = ('distributed>=2025.1',)
 ANALYSIS = ('matplotlib>=3.9',)
 TEST = (
-  'pytest>=8', 'pytest-xdist>=3.1', 'hypothesis>=6.16', 'setuptools>=77', *CLUSTER,
-  *ANALYSIS,
+  'pytest>=8', 'pytest-xdist>=3.1', 'hypothesis>=6.16', 'setuptools>=77',
+  *CLUSTER, *ANALYSIS,
 )  # fmt: skip
 DEV = (*TEST, *VIDEO, 'ruff>=0.14', 'build>=1')
 
