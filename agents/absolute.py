@@ -14,7 +14,9 @@ _SWAYS_S = 3.0  # So long the camera's fastest sway counts.
 _REPAIRS = 25  # Images that the background behind the hover is made from.
 # A target that is sought in the whole picture must be this much of itself.
 _MIN_SHARE, _MAX_SHARE = 0.3, 3.0
+_MOST_SIDE = 2.0  # Its sides are at most so many times longer or shorter.
 _PART_SHARE = 0.05  # Less of a target is no other one.
+_COVERED = 0.5  # Of a gate: what changes so much of it hides the target.
 _Row = tuple[float, ...]  # A time and numbers.
 
 
@@ -132,6 +134,9 @@ class Follower:
     )
     share = total / self._ghost.total
     outside = self._at_edge()
+    support = cv2.countNonZero(weights)
+    if support > _COVERED * weights.size:
+      return self.lose(time_s, outside=outside)
     if not config.lost_share <= share <= config.most_share:
       found = None if outside else self._search(image)
       if found is None:
@@ -146,7 +151,6 @@ class Follower:
     # Where the whole room moves, a target at rest does too, by parallax.
     sway_px_s = max((each for _, each in self._sways_px_s), default=0.0)
     speed_px_s = max(_speed(self._recent) - sway_px_s, 0.0)
-    support = cv2.countNonZero(weights)
     return klt.Track(
       time_s, centre_px, speed_px_s, support, min(share, 1.0), True,
       width_px=self._ghost.width_px,
@@ -210,7 +214,10 @@ class Follower:
     weights = self._weights(image, whole, self._config.watch_sigmas, wide=True)
     blobs = difference.Blobs(weights)
     shares = blobs.totals / self._ghost.total
-    (picked,) = np.nonzero((shares > _MIN_SHARE) & (shares < _MAX_SHARE))
+    fits = (shares > _MIN_SHARE) & (shares < _MAX_SHARE)
+    sides = (blobs.boxes[:, 2:] - blobs.boxes[:, :2]) / self._ghost.size_px
+    fits &= (np.abs(np.log2(sides)) < np.log2(_MOST_SIDE)).all(axis=1)
+    (picked,) = np.nonzero(fits)
     if len(picked) != 1:
       return None
     _, centre_px = difference.centroid(blobs.only(picked), (0, 0))

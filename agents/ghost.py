@@ -31,12 +31,14 @@ class Ghost:
   Attributes:
     anchor_px: (2,) its centre.
     width_px: Its width.
+    size_px: (2,) width and height of the difference that it makes.
     total: The sum of its weights.
     box: Left, top, right and bottom of what it covered.
   """
 
   anchor_px: np.ndarray
   width_px: float
+  size_px: np.ndarray
   total: float
   box: tuple[int, int, int, int]
 
@@ -119,5 +121,6 @@ class Separation:
       min(int(columns[-1]) + 1 + _MARGIN_PX, width),
       min(int(rows[-1]) + 1 + _MARGIN_PX, height),
     )
-    width_px = float(columns[-1] + 1 - columns[0]) - self._detector.blur_px
-    return Ghost(anchor_px, width_px, total, box)
+    size_px = np.array([np.ptp(columns), np.ptp(rows)]) + 1.0
+    width_px = float(size_px[0]) - self._detector.blur_px
+    return Ghost(anchor_px, width_px, size_px, total, box)

@@ -49,7 +49,7 @@ def test_every_field_that_is_changed_is_said(name: str) -> None:
 
 
 def test_what_is_said_makes_the_same_scenario() -> None:
-  scene = made(noise_sigma=5.0, shadows=True, gesture_s=2.0, bystanders=1)
+  scene = made(noise_sigma=5.0, shadows=True, gesture_s=4.0, bystanders=1)
   read = {}
   for each in changes.of(scene):
     name, _, text = each.partition('=')

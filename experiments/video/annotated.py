@@ -89,7 +89,7 @@ class Film:
     while self._begin_s + self._pictures / _FPS <= time_s + 1e-6:
       if shown is None:
         sight = self._watch.sight(image)
-        now = moment.Moment(time_s, Symbol.NULL, (sight,), {})
+        now = moment.Moment(time_s, Symbol.NULL, (sight,), {}, {})
         shown = self._page.draw(now)
       self._encoder.write(shown)
       self._pictures += 1
