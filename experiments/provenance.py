@@ -5,7 +5,6 @@ import dataclasses
 import datetime
 import functools
 import hashlib
-import importlib.metadata
 import pathlib
 import platform
 import shlex
@@ -55,13 +54,13 @@ def source_digest(hashes: dict[str, str]) -> str:
 
 @functools.cache
 def versions() -> dict[str, str]:
-  """Version of this package, of Python and of every dependency."""
+  """Version of this package, of Python and of every dependency's module."""
   out = {
     'waggle-tasks': waggle_tasks.__version__,
     'python': platform.python_version(),
   }
   for need in dependencies.declared():
-    out[need.name] = importlib.metadata.version(need.name)
+    out[need.name] = dependencies.version(need.name) or 'unknown'
   return out
 
 
