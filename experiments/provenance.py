@@ -8,10 +8,14 @@ import hashlib
 import pathlib
 import platform
 import shlex
+from typing import TYPE_CHECKING
 
 import waggle_tasks
 from waggle_tasks import agents, arenas, entities, errors, experiments
 from waggle_tasks.experiments import dependencies
+
+if TYPE_CHECKING:
+  from dm_control import mjcf
 
 
 class SourceError(errors.WaggleError):
@@ -64,11 +68,13 @@ def versions() -> dict[str, str]:
   return out
 
 
-def renderer_name() -> str:
-  """The GL renderer of the context that is current, such as 'llvmpipe'."""
+def renderer_name(physics: 'mjcf.Physics') -> str:
+  """The GL renderer that draws a simulation, such as 'llvmpipe'."""
   from OpenGL import GL
 
-  name = GL.glGetString(GL.GL_RENDERER)
+  # Its context may be current in a thread of its own, and only there.
+  with physics.contexts.gl.make_current() as executor:
+    name = executor.call(GL.glGetString, GL.GL_RENDERER)
   return name.decode() if name else 'unknown'
 
 
