@@ -22,6 +22,7 @@ from waggle_tasks.experiments import dask_probe, pool, provenance
 
 EXTRA = "pip install 'waggle-tasks[cluster]'"
 _CONNECT_S = 10.0
+_POLL_S = 0.5
 _LOOK_S = 10.0  # How often to look whether anybody works.
 _WORKERS_S = 60.0  # Clusters that grow on demand take a while.
 _TURN = threading.Lock()
@@ -93,20 +94,21 @@ def run(jobs: Sequence[pool.Job], place: str) -> Iterator[pool.Done]:
   # It tells of every try to find a scheduler that is gone.
   logging.getLogger('distributed.client').setLevel(logging.CRITICAL)
   try:
+    _wait_for_workers(place)
     with distributed.Client(place, timeout=_CONNECT_S) as client:
-      _wait_for_workers(client, place)
       yield from _run(jobs, client, place)
   except (OSError, ImportError) as error:
     raise _gone(place, str(error)) from None
 
 
-def _wait_for_workers(client: object, place: str) -> None:
-  try:
-    client.wait_for_workers(1, timeout=_WORKERS_S)
-  except TimeoutError:
-    raise ClusterError(
-      f'`scheduler` must have workers: {place} had none for {_WORKERS_S:g} s'
-    ) from None
+def _wait_for_workers(place: str) -> None:
+  end_s = time.monotonic() + _WORKERS_S
+  while not dask_probe.ask(place, _CONNECT_S)['workers']:
+    if time.monotonic() > end_s:
+      raise ClusterError(
+        f'`scheduler` must have workers: {place} had none for {_WORKERS_S:g} s'
+      )
+    time.sleep(_POLL_S)
 
 
 def _run(
@@ -141,7 +143,7 @@ def _next(news: queue.SimpleQueue, place: str) -> object:
     try:
       if dask_probe.ask(place, _CONNECT_S)['workers']:
         seen_s = time.monotonic()
-    except ValueError as error:
+    except ConnectionError as error:
       reason = str(error)
     if time.monotonic() - seen_s > _WORKERS_S:
       raise _gone(place, f'for {_WORKERS_S:g} s {reason}')

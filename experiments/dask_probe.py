@@ -20,7 +20,7 @@ def ask(address: str, limit_s: float) -> dict[str, dict]:
     Its 'workers', and the versions of its 'packages'.
 
   Raises:
-    ValueError: if no scheduler answers there.
+    ConnectionError: if no scheduler answers there.
   """
   return asyncio.run(_ask(address, limit_s))
 
@@ -57,18 +57,20 @@ async def _ask(address: str, limit_s: float) -> dict[str, dict]:
       packages = (await _send(link, 'versions'))['packages']
     kind, workers = about['type'], about['workers']
   except TimeoutError:
-    raise ValueError(
+    raise ConnectionError(
       f'what listens there answers nothing within {limit_s:g} s'
     ) from None
   except Exception as error:  # Whatever comes of what others say.
-    raise ValueError(
+    raise ConnectionError(
       f'what listens there is no scheduler: {type(error).__name__}'
     ) from None
   finally:
     if link is not None:
       link.abort()
   if kind != 'Scheduler':
-    raise ValueError(f'what listens there is no scheduler: a {kind} of Dask')
+    raise ConnectionError(
+      f'what listens there is no scheduler: a {kind} of Dask'
+    )
   return {'workers': workers, 'packages': packages}
 
 

@@ -235,6 +235,19 @@ def test_a_scheduler_of_another_version_is_refused(
     cluster.find(address)
 
 
+@needs_dask
+def test_a_scheduler_that_gets_no_workers_is_refused(
+  monkeypatch: pytest.MonkeyPatch,
+) -> None:
+  monkeypatch.setattr(dask_probe, 'ask', lambda place, limit_s: {'workers': {}})
+  monkeypatch.setattr(cluster, '_WORKERS_S', 0.1)
+  with pytest.raises(
+    cluster.ClusterError,
+    match=r'must have workers: tcp://a:1 had none for 0\.1 s',
+  ):
+    list(cluster.run([pool.Job('a', print, ())], 'tcp://a:1'))
+
+
 # A cluster that goes away while it works on the second of two jobs.
 LOST = """
 import os, pathlib, signal, sys, time
