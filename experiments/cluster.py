@@ -5,6 +5,7 @@ works on one job at a time: several would share its GL.
 """
 
 from collections.abc import Iterator, Sequence
+from concurrent import futures as futures_lib
 import contextlib
 import functools
 import importlib.util
@@ -93,12 +94,15 @@ def run(jobs: Sequence[pool.Job], place: str) -> Iterator[pool.Done]:
     return
   # It tells of every try to find a scheduler that is gone.
   logging.getLogger('distributed.client').setLevel(logging.CRITICAL)
+  ours = _origin()
   try:
     _wait_for_workers(place)
     with distributed.Client(place, timeout=_CONNECT_S) as client:
-      yield from _run(jobs, client, place)
+      yield from _run(jobs, client, place, ours)
+  except futures_lib.CancelledError:
+    raise _gone(place, 'the connection to it is lost') from None
   except (OSError, ImportError) as error:
-    raise _gone(place, str(error)) from None
+    raise _gone(place, str(error) or 'it answers nothing') from None
 
 
 def _wait_for_workers(place: str) -> None:
@@ -112,9 +116,12 @@ def _wait_for_workers(place: str) -> None:
 
 
 def _run(
-  jobs: Sequence[pool.Job], client: object, place: str
+  jobs: Sequence[pool.Job],
+  client: object,
+  place: str,
+  ours: tuple[str, dict[str, str]],
 ) -> Iterator[pool.Done]:
-  ours, news = _origin(), queue.SimpleQueue()
+  news = queue.SimpleQueue()
   run_name = uuid.uuid4().hex  # Others may fly jobs of the same names.
   named = {f'{run_name} {job.name}': job for job in jobs}
   futures = [
@@ -127,8 +134,6 @@ def _run(
     future.add_done_callback(news.put)
   for _ in futures:
     future = _next(news, place)
-    if future.cancelled():
-      raise _gone(place, 'the connection to it is lost')
     yield pool.Done(named[future.key], _result(future, named[future.key]))
     future.release()
 
@@ -159,7 +164,9 @@ def _gone(place: str, reason: str) -> ClusterError:
 def _result(future: object, job: pool.Job) -> object:
   import distributed
 
-  error = future.exception()
+  if future.cancelled():  # With the connection to the scheduler.
+    raise futures_lib.CancelledError
+  error = future.exception(_WORKERS_S)
   if isinstance(error, ClusterError):
     raise ClusterError(str(error))
   if error is not None:
@@ -167,7 +174,7 @@ def _result(future: object, job: pool.Job) -> object:
     if isinstance(error, distributed.KilledWorker):
       reason = 'each worker that tried it died'
     raise pool.WorkerError(f'{job.name} failed, at last: {reason}')
-  return future.result()
+  return future.result(_WORKERS_S)
 
 
 def _work(job: pool.Job, theirs: tuple[str, dict[str, str]]) -> object:

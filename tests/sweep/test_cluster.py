@@ -1,6 +1,7 @@
 """Sweeps on a Dask cluster: a real scheduler and two real workers."""
 
 from collections.abc import Callable, Iterator
+from concurrent import futures
 import contextlib
 import importlib.util
 import json
@@ -11,6 +12,8 @@ import socket
 import subprocess
 import sys
 import threading
+import types
+from unittest import mock
 
 import pytest
 
@@ -244,6 +247,28 @@ def test_a_scheduler_that_gets_no_workers_is_refused(
   with pytest.raises(
     cluster.ClusterError,
     match=r'must have workers: tcp://a:1 had none for 0\.1 s',
+  ):
+    list(cluster.run([pool.Job('a', print, ())], 'tcp://a:1'))
+
+
+@needs_dask
+@pytest.mark.parametrize('error', [futures.CancelledError(), TimeoutError()])
+def test_a_scheduler_that_goes_away_as_a_result_is_fetched_is_told(
+  error: Exception, monkeypatch: pytest.MonkeyPatch
+) -> None:
+  fetched = types.SimpleNamespace(
+    key='r a', cancelled=lambda: False, exception=lambda limit_s: None
+  )
+  fetched.result = mock.Mock(side_effect=error)
+  fetched.add_done_callback = lambda call: call(fetched)
+  client = mock.MagicMock()
+  client.return_value.__enter__.return_value.submit.return_value = fetched
+  client.return_value.__exit__.return_value = False
+  monkeypatch.setattr('distributed.Client', client)
+  monkeypatch.setattr(cluster, '_wait_for_workers', lambda place: None)
+  monkeypatch.setattr(cluster.uuid, 'uuid4', lambda: mock.Mock(hex='r'))
+  with pytest.raises(
+    cluster.ClusterError, match=r'went away: tcp://a:1: \w.+ What was flown is'
   ):
     list(cluster.run([pool.Job('a', print, ())], 'tcp://a:1'))
 
