@@ -21,7 +21,7 @@ import types
 from absl import flags
 
 from waggle_tasks import errors, runtime
-from waggle_tasks.experiments import gl
+from waggle_tasks.experiments import gl, health
 from waggle_tasks.protocol import checks
 
 BAD_INPUT = 2
@@ -63,6 +63,7 @@ def run(
   try:
     if check_versions:
       runtime.require_versions()
+      health.require()
     module = importlib.import_module(name)
     if {'--help', '-h'} & set(argv[1:]):
       print(help_text(program, module))
