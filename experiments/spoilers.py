@@ -18,6 +18,8 @@ from waggle_tasks.protocol import agreement as agreement_lib
 Spoiler = Callable[[Stream], Stream]
 _SHORTEST_S, _LONGEST_S = 0.2, 40.0
 _MOST_LOSSES = 3
+_LASTING_SHARE = 0.3  # Of all exposures; receivers are slow in some.
+_WHOLE = 250  # Of light, in a table of whole numbers.
 _POOL = 2  # A pool of noise is so many times as wide and high as an image.
 
 
@@ -128,9 +130,9 @@ def _shadow(rng: np.random.RandomState) -> Spoiler:
       columns = np.linspace(0, 1, image.shape[1])
       middle = (share_s * time_s) % (1 + 6 * width) - 3 * width
       dark = 1 - depth * np.exp(-(((columns - middle) / width) ** 2) / 2)
-      factor = np.repeat(dark[None, :, None], 3, axis=2).astype(np.float32)
-      factor = np.broadcast_to(factor, image.shape)
-      yield cv2.multiply(image, factor, dtype=cv2.CV_8U), time_s
+      row = np.repeat(np.rint(_WHOLE * dark), 3).astype(np.uint8)
+      factor = np.tile(row, (len(image), 1)).reshape(image.shape)
+      yield cv2.multiply(image, factor, scale=1 / _WHOLE), time_s
 
   return spoil
 
@@ -244,7 +246,7 @@ def draw(
     _loss(rng, agreed, length_s)
     for _ in range(rng.randint(0, _MOST_LOSSES + 1))
   )
-  name = rng.choice([*LASTING]) if rng.rand() < 0.5 else ''
+  name = rng.choice([*LASTING]) if rng.rand() < _LASTING_SHARE else ''
   first = (LASTING[name](rng),) if name else ()
   return Spoiling(losses, str(name), (*first, *losses))
 
