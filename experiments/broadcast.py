@@ -15,12 +15,12 @@ import sys
 from absl import flags
 from dm_control import composer
 import dm_env
-import tqdm
 
 from waggle_tasks import scenario
 from waggle_tasks.agents import observer_agent, receivers
 from waggle_tasks.experiments import (
   evaluator,
+  job_progress,
   launch,
   nulls,
   provenance,
@@ -72,10 +72,9 @@ def _roll(
   watchers: Sequence[rollout_lib.Watcher],
 ) -> rollout_lib.Rollout:
   """Runs the episode behind a progress bar of simulated seconds."""
-  frames = timing.frames(scene.episode_s)
   form = '{desc}: {percentage:3.0f}%|{bar}| {n:.0f}/{total:.0f} s'
-  with tqdm.tqdm(
-    total=frames * timing.FRAME_S, desc='broadcast', mininterval=0.5,
+  with job_progress.seconds_bar(
+    timing.frames(scene.episode_s), desc='broadcast',
     bar_format=form + ' simulated [{elapsed} < {remaining}]',
   ) as bar:  # fmt: skip
 
@@ -86,7 +85,7 @@ def _roll(
     ) -> None:
       del environment, team
       if not timestep.first():
-        bar.update(timing.FRAME_S)
+        bar.update()
 
     return rollout_lib.run(scene, receiver_name, [*watchers, watch])
 
