@@ -7,7 +7,8 @@ that a receiver took. Exit status 0 when the group passed, 1 when it did not, 2
 on bad input.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+import contextlib
 import datetime
 import pathlib
 import sys
@@ -50,9 +51,8 @@ def main(argv: Sequence[str]) -> int:
   scene = scenario_flags.read()
   receivers.make(_RECEIVER.value, scene.agreement)
   nulls.check([scene], _RECEIVER.value)
-  folder = pathlib.Path(_OUTPUT.value or records.free_folder('broadcast'))
   command = provenance.command_line('broadcast', launch.given_flags())
-  with records.new_folder(folder) as draft:
+  with _folder() as (draft, folder):
     began = datetime.datetime.now(datetime.UTC)
     with recording_flags.recorders(draft, scene) as watchers:
       rollout = _roll(scene, _RECEIVER.value, watchers)
@@ -64,6 +64,18 @@ def main(argv: Sequence[str]) -> int:
   print(report(scene, verdict))
   print(f'Run folder: {folder}, report: {folder / document.NAME}')
   return 0 if verdict.passed else 1
+
+
+@contextlib.contextmanager
+def _folder() -> Iterator[tuple[pathlib.Path, pathlib.Path]]:
+  """A draft of the run folder of the flags, and that folder."""
+  if not _OUTPUT.value:
+    with records.next_folder('broadcast') as pair:
+      yield pair
+    return
+  folder = pathlib.Path(_OUTPUT.value)
+  with records.new_folder(folder) as draft:
+    yield draft, folder
 
 
 def _roll(

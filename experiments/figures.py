@@ -2,13 +2,14 @@
 
 from collections.abc import Sequence
 import importlib.util
+import io
 import math
 import pathlib
 
 import numpy as np
 
 from waggle_tasks import errors
-from waggle_tasks.experiments import envelope, heat, palette
+from waggle_tasks.experiments import envelope, files, heat, palette
 
 NAMES = 'envelope.svg', 'envelope.png'
 MISSING = (
@@ -66,10 +67,13 @@ def draw(
       axis.set_axis_off()
     bar = figure.colorbar(image, ax=axes, shrink=0.8)
     bar.set_label('share of exposures that were right')
-    paths = [folder / name for name in NAMES]
-    figure.savefig(paths[0], metadata={'Date': None})
-    figure.savefig(paths[1], dpi=_DPI)
-  return paths
+    drawn, painted = io.BytesIO(), io.BytesIO()
+    figure.savefig(drawn, format='svg', metadata={'Date': None})
+    figure.savefig(painted, format='png', dpi=_DPI)
+  return [
+    files.replace(folder / name, data.getvalue())
+    for name, data in zip(NAMES, (drawn, painted), strict=True)
+  ]
 
 
 def _panel(panel: envelope.Panel, axis: object) -> object:

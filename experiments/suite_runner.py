@@ -9,6 +9,7 @@ import shutil
 
 from waggle_tasks import suites
 from waggle_tasks.experiments import (
+  files,
   job_progress,
   pool,
   provenance,
@@ -73,11 +74,11 @@ def run(
     shutil.rmtree(folder / _DRAFTS, ignore_errors=True)
     provenance.check_unchanged(sources, 'suite')
     rows = [suite_case.row(c, folder / _CASES / c.name) for c in cases]
-    result_folder.replace(
+    files.replace(
       folder / 'results.jsonl',
       ''.join(f'{records.dumps(row)}\n' for row in rows),
     )
-    result_folder.replace(folder / 'results.csv', _csv(rows))
+    files.replace(folder / 'results.csv', _csv(rows))
   return rows
 
 

@@ -10,6 +10,7 @@ import pathlib
 from waggle_tasks.experiments import (
   archive,
   figures,
+  files,
   job_progress,
   journal,
   pool,
@@ -99,12 +100,12 @@ def run(
       for case, identity in zip(cases, identities, strict=True)
     ]
     lines = ''.join(f'{records.dumps(row)}\n' for row in rows)
-    result_folder.replace(folder / RESULTS, lines)
-    result_folder.replace(folder / TABLE, _csv(rows))
+    files.replace(folder / RESULTS, lines)
+    files.replace(folder / TABLE, _csv(rows))
     if jobs or not (folder / PROVENANCE).exists():
       renderers = ', '.join(sorted({row['renderer'] for row in rows}))
       origin = provenance.Provenance.of(command, renderers, began)
-      result_folder.replace(folder / PROVENANCE, records.pretty(origin))
+      files.replace(folder / PROVENANCE, records.pretty(origin))
   return rows
 
 
