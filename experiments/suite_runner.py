@@ -1,6 +1,7 @@
 """Runs the cases of a suite into a folder, and goes on where it was ended."""
 
 from collections.abc import Sequence
+import contextlib
 import csv
 import io
 import os
@@ -46,7 +47,8 @@ def run(
     The rows of results.jsonl, in the order of `cases`.
 
   Raises:
-    OutputError: if the folder cannot be used.
+    OutputError: if the folder cannot be used, or a case not be recorded; then
+      those that were are kept.
     WorkerError: if a case failed again and again.
     SourceError: if this project's sources changed meanwhile.
   """
@@ -70,8 +72,10 @@ def run(
       )
       for case in sorted(missing, key=_size, reverse=True)
     ]  # fmt: skip
-    _fly(jobs, folder, workers)
-    shutil.rmtree(folder / _DRAFTS, ignore_errors=True)
+    try:
+      _fly(jobs, folder, workers)
+    finally:
+      shutil.rmtree(folder / _DRAFTS, ignore_errors=True)
     provenance.check_unchanged(sources, 'suite')
     rows = [suite_case.row(c, folder / _CASES / c.name) for c in cases]
     files.replace(
@@ -111,12 +115,18 @@ def _fly(jobs: Sequence[pool.Job], folder: pathlib.Path, workers: int) -> None:
   lengths = {
     job.name: timing.frames(job.arguments[0].scene.episode_s) for job in jobs
   }
-  news = pool.run(jobs, workers)
-  for done in job_progress.shown(
-    news, lengths, lambda _, active: ', '.join(active)
-  ):
-    name = done.job.name
-    os.replace(folder / _DRAFTS / name, folder / _CASES / name)
+  # Closed here, whatever happens: no worker writes after that.
+  with contextlib.closing(pool.run(jobs, workers)) as news:
+    for done in job_progress.shown(
+      news, lengths, lambda _, active: ', '.join(active)
+    ):
+      name = done.job.name
+      if done.value is not None:
+        raise records.OutputError(
+          f'`output` must be writable: {name} could not be recorded:'
+          f' {done.value}; cases that were are kept'
+        )
+      os.replace(folder / _DRAFTS / name, folder / _CASES / name)
 
 
 def _csv(rows: Sequence[dict[str, object]]) -> str:
