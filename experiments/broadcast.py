@@ -24,6 +24,7 @@ from waggle_tasks.experiments import (
   job_progress,
   launch,
   nulls,
+  outside,
   provenance,
   recording_flags,
   records,
@@ -52,6 +53,7 @@ def main(argv: Sequence[str]) -> int:
   receivers.make(_RECEIVER.value, scene.agreement)
   nulls.check([scene], _RECEIVER.value)
   command = provenance.command_line('broadcast', launch.given_flags())
+  foreign = outside.paths(_RECEIVER.value, [scene])
   with _folder() as (draft, folder):
     began = datetime.datetime.now(datetime.UTC)
     with recording_flags.recorders(draft, scene) as watchers:
@@ -59,7 +61,7 @@ def main(argv: Sequence[str]) -> int:
     verdict = evaluator.evaluate(scene, rollout)
     records.write_run(
       draft, scene, _RECEIVER.value, rollout, verdict,
-      provenance.Provenance.of(command, rollout.renderer, began),
+      provenance.Provenance.of(command, rollout.renderer, began, foreign),
     )  # fmt: skip
   print(report(scene, verdict))
   print(f'Run folder: {folder}, report: {folder / document.NAME}')

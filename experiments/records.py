@@ -14,7 +14,15 @@ import shutil
 import numpy as np
 
 from waggle_tasks import errors, scenario
-from waggle_tasks.experiments import archive, evaluator, files, provenance
+from waggle_tasks.agents import receivers
+from waggle_tasks.experiments import (
+  archive,
+  evaluator,
+  files,
+  outside,
+  provenance,
+  source_files,
+)
 from waggle_tasks.experiments import rollout as rollout_lib
 from waggle_tasks.experiments import traces as traces_lib
 from waggle_tasks.experiments.pages import run_page
@@ -42,13 +50,27 @@ def to_json(value: object) -> object:
       return {str(key): to_json(each) for key, each in value.items()}
     case list() | tuple():
       return [to_json(each) for each in value]
+    case None | str() | bool() | int() | float():
+      return value
+    case set() | frozenset():
+      return sorted((to_json(each) for each in value), key=repr)
+    case pathlib.PurePath():
+      return str(value)
+    case bytes():
+      return value.hex()
+    case type():
+      return value.__qualname__
   if dataclasses.is_dataclass(value):
     fields = {
       field.name: to_json(getattr(value, field.name))
       for field in dataclasses.fields(value)
     }
     return fields
-  return value
+  # Of one's own, such as a layout that is a plain class.
+  return {
+    'type': getattr(value, '__qualname__', type(value).__qualname__),
+    **to_json(getattr(value, '__dict__', {})),
+  }
 
 
 def config(scene: scenario.Scenario, receiver_name: str) -> dict[str, object]:
@@ -64,15 +86,27 @@ def identity(
 ) -> str:
   """A SHA-256 of all that decides the result of an episode.
 
+  Code from outside of this project counts with its sources, and with what it
+  makes: where vehicles stand, what is flown, the numbers of the receiver.
+
   Args:
     scene: The scenario.
     receiver_name: The receiver.
     source_digest: Of this project's sources, see `provenance`.
+
+  Raises:
+    UnknownSourceError: if code from outside has no source.
   """
+  _, numbers = receivers.configured(receiver_name)
   parts = {
     'config': config(scene, receiver_name),
     'sources': source_digest,
     'versions': provenance.versions(),
+    'outside': source_files.hashes(outside.paths(receiver_name, [scene])),
+    'poses': scene.poses(),
+    'dance': scene.schedule,
+    'episode_s': scene.episode_s,
+    'numbers': numbers,
   }
   text = json.dumps(to_json(parts), sort_keys=True)
   return hashlib.sha256(text.encode()).hexdigest()

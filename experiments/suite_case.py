@@ -12,6 +12,7 @@ from waggle_tasks.experiments import (
   evaluator,
   files,
   job_progress,
+  outside,
   provenance,
   records,
 )
@@ -49,7 +50,10 @@ def fly(
     draft.mkdir(parents=True)
     rollout = rollout_lib.run(case.scene, receiver_name, watchers)
     verdict = evaluator.evaluate(case.scene, rollout)
-    origin = provenance.Provenance.of(command, rollout.renderer, began)
+    origin = provenance.Provenance.of(
+      command, rollout.renderer, began,
+      outside.paths(receiver_name, [case.scene]),
+    )  # fmt: skip
     records.write_run(
       draft, case.scene, receiver_name, rollout, verdict, origin
     )

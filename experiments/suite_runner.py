@@ -12,10 +12,12 @@ from waggle_tasks import suites
 from waggle_tasks.experiments import (
   files,
   job_progress,
+  outside,
   pool,
   provenance,
   records,
   result_folder,
+  source_files,
   suite_case,
 )
 from waggle_tasks.protocol import timing
@@ -50,10 +52,13 @@ def run(
     OutputError: if the folder cannot be used, or a case not be recorded; then
       those that were are kept.
     WorkerError: if a case failed again and again.
-    SourceError: if this project's sources changed meanwhile.
+    SourceError: if sources changed meanwhile.
+    UnknownSourceError: if code from outside has none.
   """
-  sources = provenance.source_hashes()
-  digest = provenance.source_digest(sources)
+  foreign = outside.paths(receiver_name, (case.scene for case in cases))
+  own = provenance.source_hashes()
+  sources = own | source_files.hashes(foreign)
+  digest = provenance.source_digest(own)
   identities = {
     case.name: records.identity(case.scene, receiver_name, digest)
     for case in cases
@@ -76,7 +81,7 @@ def run(
       _fly(jobs, folder, workers)
     finally:
       shutil.rmtree(folder / _DRAFTS, ignore_errors=True)
-    provenance.check_unchanged(sources, 'suite')
+    provenance.check_unchanged(sources, 'suite', foreign)
     rows = [suite_case.row(c, folder / _CASES / c.name) for c in cases]
     files.replace(
       folder / 'results.jsonl',
