@@ -57,7 +57,8 @@ def told(work: Callable[[], int]) -> int:
       _silence(stream)
     except OSError as error:
       _silence(stream)
-      status = _not_printed(error)
+      if status != NOT_PRINTED:  # Else it was told.
+        status = _not_printed(error)
   return status
 
 
