@@ -37,9 +37,11 @@ def paths(
     UnknownSourceError: if something was made in a prompt, or by `exec`.
   """
   kind = receiver_name.partition(':')[0]
-  roots = receivers.RECEIVERS.get(kind), registry.build, registry.environment
+  roots = [receivers.RECEIVERS.get(kind), registry.build, registry.environment]
+  for scene in scenes:  # All else in one is of this project.
+    roots += type(scene), scene.layout, scene.codebook.gestures
   seen, out = set(), {}
-  for value in (*roots, *scenes):
+  for value in roots:
     for code in _reachable(value, seen):
       out |= source_files.of(code)
   waiting = [*out]
