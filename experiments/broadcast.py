@@ -29,6 +29,7 @@ from waggle_tasks.experiments import (
   recording_flags,
   records,
   scenario_flags,
+  source_files,
   table,
 )
 from waggle_tasks.experiments import rollout as rollout_lib
@@ -53,7 +54,11 @@ def main(argv: Sequence[str]) -> int:
   receivers.make(_RECEIVER.value, scene.agreement)
   nulls.check([scene], _RECEIVER.value)
   command = provenance.command_line('broadcast', launch.given_flags())
-  foreign = outside.paths(_RECEIVER.value, [scene])
+  try:
+    foreign = outside.paths(_RECEIVER.value, [scene])
+  except source_files.UnknownSourceError as error:
+    foreign = {}  # One flight stands for itself; it is only not told so well.
+    print(f'provenance.json will not be complete: {error}', file=sys.stderr)
   with _folder() as (draft, folder):
     began = datetime.datetime.now(datetime.UTC)
     with recording_flags.recorders(draft, scene) as watchers:

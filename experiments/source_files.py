@@ -54,8 +54,10 @@ def of(code: Code) -> dict[str, pathlib.Path]:
       `exec`.
   """
   name = _module(code)
-  home = getattr(sys.modules.get(name), '__file__', None)
   parts = [each.__code__.co_filename for each in _functions(code)]
+  home = getattr(sys.modules.get(name), '__file__', None)
+  if name not in sys.modules and parts:  # Loaded from a file by its path.
+    home = parts[0]
   for each in (home, *parts):
     if each is None or not pathlib.Path(each).is_file():
       raise UnknownSourceError(

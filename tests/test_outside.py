@@ -3,7 +3,7 @@
 from collections.abc import Callable, Iterator
 import dataclasses
 import functools
-import importlib
+import importlib.util
 import itertools
 import json
 import pathlib
@@ -242,6 +242,38 @@ def test_what_has_no_source_is_refused(
     with pytest.raises(source_files.UnknownSourceError, match=error):
       run(cases, 'mine', tmp_path / 'results', 1, 'waggle sweep')
   assert not (tmp_path / 'results').exists()
+
+
+def test_a_module_that_was_loaded_by_its_path_is_known(
+  registered: Callable[[object], None], tmp_path: pathlib.Path
+) -> None:
+  path = tmp_path / 'mine.py'
+  body = 'def step(self, *_):\n    return ()'
+  path.write_text(RECEIVER.format(head='', body=body))
+  spec = importlib.util.spec_from_file_location('loaded', path)
+  module = importlib.util.module_from_spec(spec)
+  spec.loader.exec_module(module)
+  registered(module.Mine)
+  assert outside.paths('mine', [SCENE]) == {'loaded': path}
+
+
+def test_one_flight_of_what_has_no_source_is_flown_with_a_note(
+  tmp_path: pathlib.Path,
+) -> None:
+  program = RECEIVER.format(head='', body='pass') + (
+    'from waggle_tasks.agents import receivers\n'
+    'from waggle_tasks.experiments import main\n'
+    'receivers.RECEIVERS["mine"] = Mine\n'
+    'main.main(["waggle", "broadcast", "--receiver=mine", "--output=run",'
+    ' "--control=no_send", "--observers=1", "--duration_s=0.2"])'
+  )
+  child = subprocess.run(
+    [sys.executable, '-'], input=program, cwd=tmp_path, capture_output=True,
+    text=True, check=True,
+  )  # fmt: skip
+  note = 'provenance.json will not be complete: Mine decides results and must'
+  assert child.stderr.startswith(note)
+  assert (tmp_path / 'run' / 'result.json').exists()
 
 
 def test_sources_that_change_meanwhile_are_noticed(
