@@ -8,20 +8,39 @@ import setuptools
 HERE = pathlib.Path(__file__).parent
 FOLDERS = ('entities', 'arenas', 'agents', 'experiments')
 
-VIDEO = ('av>=14',)
+VIDEO = ('av>=17.1',)
 CLUSTER = ('distributed>=2025.1',)
 ANALYSIS = ('matplotlib>=3.9',)
 TEST = (
-  'pytest>=8', 'pytest-xdist>=3', 'hypothesis>=6', 'setuptools>=77', *CLUSTER,
-  *ANALYSIS,
+  'pytest>=8', 'pytest-xdist>=3.1', 'hypothesis>=6.16', 'setuptools>=77',
+  *CLUSTER, *ANALYSIS, *VIDEO,
 )  # fmt: skip
-DEV = (*TEST, *VIDEO, 'ruff>=0.14', 'build>=1')
+DEV = (*TEST, 'ruff>=0.14', 'build>=1')
 
 
 def version() -> str:
   """Returns the version without importing the package."""
   text = (HERE / 'waggle_tasks' / '_version.py').read_text(encoding='utf-8')
   return re.search(r"^__version__ = '(.+)'$", text, re.MULTILINE).group(1)
+
+
+def urls() -> dict[str, str]:
+  """Returns where the project is, as far as it says so."""
+  text = (HERE / 'CITATION.cff').read_text(encoding='utf-8')
+  found = re.search(r"^repository-code: '?([^\s']+)", text, re.MULTILINE)
+  return {'Source': found[1]} if found else {}
+
+
+def description() -> str:
+  """Returns README.md as it can be read alone.
+
+  A package index has none of the files beside it: of pictures it shows the
+  words, of links to these files the names.
+  """
+  text = (HERE / 'README.md').read_text(encoding='utf-8')
+  text = re.sub(r'<!--.*?-->\n\n', '', text, flags=re.DOTALL)
+  text = re.sub(r'!\[([^]]*)\]\((?!https?:)[^)]*\)', r'*\1*', text)
+  return re.sub(r'\[([^]]*)\]\((?!https?:|#)[^)]*\)', r'\1', text)
 
 
 def packages() -> list[str]:
@@ -40,9 +59,22 @@ setuptools.setup(
   name='waggle-tasks',
   version=version(),
   description='A motion-communication task suite for dm_control composer.',
-  long_description=(HERE / 'README.md').read_text(encoding='utf-8'),
+  long_description=description(),
   long_description_content_type='text/markdown',
   author='The waggle_tasks authors',
+  project_urls=urls(),
+  keywords='dm_control MuJoCo drone Crazyflie benchmark motion communication',
+  classifiers=[
+    'Development Status :: 4 - Beta',
+    'Environment :: Console',
+    'Intended Audience :: Science/Research',
+    'Operating System :: POSIX :: Linux',
+    'Programming Language :: Python :: 3',
+    'Programming Language :: Python :: 3.11',
+    'Programming Language :: Python :: 3.12',
+    'Topic :: Scientific/Engineering :: Artificial Intelligence',
+    'Topic :: Scientific/Engineering :: Image Recognition',
+  ],
   license='Apache-2.0',
   license_files=['LICENSE'],
   python_requires='>=3.11,<3.13',

@@ -14,7 +14,9 @@ _SWAYS_S = 3.0  # So long the camera's fastest sway counts.
 _REPAIRS = 25  # Images that the background behind the hover is made from.
 # A target that is sought in the whole picture must be this much of itself.
 _MIN_SHARE, _MAX_SHARE = 0.3, 3.0
+_MOST_SIDE = 2.0  # Its sides are at most so many times longer or shorter.
 _PART_SHARE = 0.05  # Less of a target is no other one.
+_COVERED = 0.5  # Of a gate: what changes so much of it hides the target.
 _Row = tuple[float, ...]  # A time and numbers.
 
 
@@ -59,8 +61,11 @@ class AbsoluteTracker:
     if departure is not None:
       self.ghost = departure.ghost
       self.anchor_px = departure.ghost.anchor_px
-      self._follower = Follower(self._config, departure)
-      return [self._follower.follow(grey, at) for at, grey in departure.greys]
+      follower = self._follower = Follower(self._config, departure)
+      return [
+        follower.lose(at) if grey is None else follower.follow(grey, at)
+        for at, grey in departure.greys
+      ]
     # Somewhere in the middle: all that is known before it moves.
     middle_px = np.array([image.shape[1], image.shape[0]]) / 2
     visible = self._hover.visible
@@ -86,6 +91,8 @@ class Follower:
     self._detector = departure.detector
     self._speckled = departure.speckled
     self._background = departure.background
+    height, width = departure.background.grey.shape
+    self._size = width, height
     self._ghost = departure.ghost
     left, top, right, bottom = departure.ghost.box
     self._home = slice(top, bottom), slice(left, right)
@@ -112,14 +119,13 @@ class Follower:
       image = difference.despeckled(image)
     aligned = self._alignment.step(image)
     if aligned is None:
-      return self._lose(time_s, 0.0, False)
+      return self.lose(time_s, outside=self._at_edge())
     if self._alignment.moving and self._background.slack is None:
       self._background.loosen(self._config.slack_px)
     return self.follow(aligned, time_s)
 
   def follow(self, image: np.ndarray, time_s: float) -> klt.Track:
     """Takes an aligned image, (H, W, 3) uint8 RGB or (H, W) uint8 grey."""
-    self._size = image.shape[1], image.shape[0]
     gate, config = self._gate(), self._config
     weights = self._weights(image, gate, config.box_sigmas)
     weights = self._mine(weights, gate)
@@ -128,10 +134,13 @@ class Follower:
     )
     share = total / self._ghost.total
     outside = self._at_edge()
+    support = cv2.countNonZero(weights)
+    if support > _COVERED * weights.size:
+      return self.lose(time_s, outside=outside)
     if not config.lost_share <= share <= config.most_share:
       found = None if outside else self._search(image)
       if found is None:
-        return self._lose(time_s, min(share, 1.0), outside)
+        return self.lose(time_s, min(share, 1.0), outside)
       share, centre_px = found
     self._repair(image, gate)
     self._centre_px, self._seen_s = centre_px, time_s
@@ -142,13 +151,21 @@ class Follower:
     # Where the whole room moves, a target at rest does too, by parallax.
     sway_px_s = max((each for _, each in self._sways_px_s), default=0.0)
     speed_px_s = max(_speed(self._recent) - sway_px_s, 0.0)
-    support = cv2.countNonZero(weights)
     return klt.Track(
       time_s, centre_px, speed_px_s, support, min(share, 1.0), True,
       width_px=self._ghost.width_px,
     )  # fmt: skip
 
-  def _lose(self, time_s: float, quality: float, outside: bool) -> klt.Track:
+  def lose(
+    self, time_s: float, quality: float = 0.0, outside: bool = False
+  ) -> klt.Track:
+    """Notes an image in which it is not seen.
+
+    Args:
+      time_s: Its time.
+      quality: What share of it was seen.
+      outside: Whether it may be out of the picture.
+    """
     self._recent.clear()
     return klt.Track(time_s, self._centre_px, 0.0, 0, quality, False, outside)
 
@@ -197,7 +214,10 @@ class Follower:
     weights = self._weights(image, whole, self._config.watch_sigmas, wide=True)
     blobs = difference.Blobs(weights)
     shares = blobs.totals / self._ghost.total
-    (picked,) = np.nonzero((shares > _MIN_SHARE) & (shares < _MAX_SHARE))
+    fits = (shares > _MIN_SHARE) & (shares < _MAX_SHARE)
+    sides = (blobs.boxes[:, 2:] - blobs.boxes[:, :2]) / self._ghost.size_px
+    fits &= (np.abs(np.log2(sides)) < np.log2(_MOST_SIDE)).all(axis=1)
+    (picked,) = np.nonzero(fits)
     if len(picked) != 1:
       return None
     _, centre_px = difference.centroid(blobs.only(picked), (0, 0))

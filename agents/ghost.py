@@ -13,7 +13,9 @@ import numpy as np
 from waggle_tasks.agents import config as config_lib
 from waggle_tasks.agents import difference
 
-_LAG_S = 0.16  # So long a ghost must not change...
+# A ghost must not change for so long, or a little longer: what moves may be
+# back where it was...
+_LAG_S = 0.16
 _MAX_CHANGE = 0.2  # ...but for this share.
 # A target and its ghost differ from the background about equally.
 _MIN_BALANCE = 0.25
@@ -29,12 +31,14 @@ class Ghost:
   Attributes:
     anchor_px: (2,) its centre.
     width_px: Its width.
+    size_px: (2,) width and height of the difference that it makes.
     total: The sum of its weights.
     box: Left, top, right and bottom of what it covered.
   """
 
   anchor_px: np.ndarray
   width_px: float
+  size_px: np.ndarray
   total: float
   box: tuple[int, int, int, int]
 
@@ -43,7 +47,7 @@ class Separation:
   """Watches a target leave its ghost.
 
   Attributes:
-    greys: Times and images, (H, W) uint8, so far.
+    greys: Times and images, (H, W) uint8, so far; None for no image of it.
   """
 
   def __init__(
@@ -68,16 +72,20 @@ class Separation:
     self._detector = detector
     self._background = background
     self._config = config
-    self.greys: list[tuple[float, np.ndarray]] = []
+    self.greys: list[tuple[float, np.ndarray | None]] = []
 
-  def add(self, grey: np.ndarray, time_s: float) -> None:
-    """Takes an image, (H, W) uint8."""
+  def add(self, grey: np.ndarray | None, time_s: float) -> None:
+    """Takes an image, (H, W) uint8, or notes that there was none."""
     self.greys.append((time_s, grey))
 
   def find(self) -> Ghost | None:
     """The ghost, once the target has left it in the last image."""
     now_s, grey = self.greys[-1]
-    older = [each for at_s, each in self.greys if now_s - at_s > _LAG_S - 1e-6]
+    older = [
+      each
+      for at_s, each in self.greys
+      if each is not None and _LAG_S - 1e-6 < now_s - at_s < 2 * _LAG_S + 1e-6
+    ]
     if not older:
       return None
     known, grey_before = self._background, older[-1]
@@ -113,5 +121,6 @@ class Separation:
       min(int(columns[-1]) + 1 + _MARGIN_PX, width),
       min(int(rows[-1]) + 1 + _MARGIN_PX, height),
     )
-    width_px = float(columns[-1] + 1 - columns[0]) - self._detector.blur_px
-    return Ghost(anchor_px, width_px, total, box)
+    size_px = np.array([np.ptp(columns), np.ptp(rows)]) + 1.0
+    width_px = float(size_px[0]) - self._detector.blur_px
+    return Ghost(anchor_px, width_px, size_px, total, box)

@@ -1,6 +1,7 @@
 """Learns what is behind a target before it has ever moved."""
 
 import dataclasses
+import math
 
 import cv2
 import numpy as np
@@ -25,7 +26,8 @@ class Departure:
     background: (H, W) with the target in it.
     slack_px: How far pictures may be out of place.
     ghost: Where the target was.
-    greys: Times and images, (H, W) uint8, since its motion began.
+    greys: Times and images, (H, W) uint8, since its motion began; None for one
+      of something else.
   """
 
   alignment: alignment.Alignment
@@ -34,7 +36,7 @@ class Departure:
   background: difference.Background
   slack_px: float
   ghost: ghost.Ghost
-  greys: list[tuple[float, np.ndarray]]
+  greys: list[tuple[float, np.ndarray | None]]
 
 
 class Hover:
@@ -54,6 +56,7 @@ class Hover:
     self._alignment: alignment.Alignment | None = None
     self._background: difference.Background | None = None
     self._separation: ghost.Separation | None = None
+    self._lost_since_s = math.nan
     self.visible = False
 
   def step(self, image: np.ndarray, time_s: float) -> Departure | None:
@@ -65,8 +68,9 @@ class Hover:
       return None
     aligned = self._alignment.step(image)
     if aligned is None:
-      self._forget()
+      self._lose(time_s)
       return None
+    self._lost_since_s = math.nan
     if self._alignment.moving and not self._slack_px:
       self._loosen()
     if self._separation is not None:
@@ -76,6 +80,15 @@ class Hover:
     if not self._learn(difference.grey(aligned), time_s):
       self._begin(self._clean(image), time_s)
     return None
+
+  def _lose(self, time_s: float) -> None:
+    """Notes an image of something else; another scene is learned in time."""
+    if math.isnan(self._lost_since_s):
+      self._lost_since_s = time_s
+    if config_lib.lasted(self._lost_since_s, time_s, self._config.learn_s):
+      self._forget()
+    elif self._separation is not None:
+      self._separation.add(None, time_s)
 
   def _clean(self, image: np.ndarray) -> np.ndarray:
     return difference.despeckled(image) if self._speckled else image

@@ -25,7 +25,7 @@ from dm_control import mjcf
 import mujoco
 import numpy as np
 
-from waggle_tasks.entities import framebuffer, rigid, windows
+from waggle_tasks.entities import forks, framebuffer, rigid, windows
 
 WIDTH, HEIGHT = 640, 480  # Paper, section 'Scene, sensors, ...'.
 _SAMPLES = 2  # Samples per pixel along each axis.
@@ -141,7 +141,11 @@ class Renderer:
     Returns:
       (HEIGHT, WIDTH, 3) uint8 RGB. It is the renderer's own buffer: copy it
       before the next call, and do not write to it.
+
+    Raises:
+      ForkError: if this process was forked from one that drew.
     """
+    forks.check()
     if camera_id not in self._canvases:
       blank = np.empty((2, HEIGHT, WIDTH, 3), np.uint8)
       self._canvases[camera_id] = _Canvas(*blank)

@@ -5,20 +5,26 @@ works on one job at a time: several would share its GL.
 """
 
 from collections.abc import Iterator, Sequence
+from concurrent import futures as futures_lib
+import contextlib
 import functools
 import importlib.util
-import json
+import logging
 import pathlib
+import queue
 import re
 import socket
 import threading
+import time
 import uuid
 
 from waggle_tasks import errors
-from waggle_tasks.experiments import pool, provenance
+from waggle_tasks.experiments import dask_probe, pool, provenance
 
 EXTRA = "pip install 'waggle-tasks[cluster]'"
 _CONNECT_S = 10.0
+_POLL_S = 0.5
+_LOOK_S = 10.0  # How often to look whether anybody works.
 _WORKERS_S = 60.0  # Clusters that grow on demand take a while.
 _TURN = threading.Lock()
 
@@ -27,89 +33,148 @@ class ClusterError(errors.WaggleError):
   """A cluster that cannot be used."""
 
 
-def find(scheduler: str) -> tuple[str, int]:
-  """Where a scheduler listens; refused when nothing does, before work.
+def find(scheduler: str) -> str:
+  """Where a scheduler listens; refused when none does, before work.
 
   Args:
     scheduler: Its address, tcp://HOST:PORT, or the JSON file that it wrote.
 
   Returns:
-    Its host and port.
+    Its address.
 
   Raises:
     ClusterError: naming what is missing.
   """
   if importlib.util.find_spec('distributed') is None:
     raise ClusterError(f'`scheduler` needs an extra: {EXTRA}')
-  address = scheduler
   try:
-    if scheduler.endswith('.json'):
-      address = json.loads(pathlib.Path(scheduler).read_text())['address']
-    found = re.fullmatch(r'tcp://(.+):(\d+)', address)
-    if not found:
-      raise ValueError('not tcp://HOST:PORT')
-    place = found[1], int(found[2])
+    address = scheduler
+    if '://' not in scheduler and _names_file(scheduler):
+      address = dask_probe.written(scheduler)
+    found = re.fullmatch(r'tcp://(?:\[(.+)\]|([^\[\]:]+)):(\d+)', address)
+    if not found or not 0 < int(found[3]) < 2**16:  # More would wrap around.
+      raise ValueError('not tcp://HOST:PORT, nor tcp://[IPV6]:PORT')
+    place = found[1] or found[2], int(found[3])
     socket.create_connection(place, _CONNECT_S).close()
-  except (OSError, ValueError, KeyError, TypeError, OverflowError) as error:
+    theirs = dask_probe.ask(address, _CONNECT_S)['packages']
+  except (OSError, ValueError) as error:
     raise ClusterError(
       '`scheduler` must be the address of a running Dask scheduler, such as'
       f' tcp://127.0.0.1:8786, or the file that it wrote: {scheduler}: {error}'
     ) from None
-  return place
+  for name in ('dask', 'distributed'):
+    here = importlib.import_module(name).__version__
+    if theirs.get(name) != here:
+      raise ClusterError(
+        f'`scheduler` must have the versions of this command: {name} is'
+        f' {theirs.get(name)} at {address}, not {here}'
+      )
+  return address
 
 
-def run(
-  jobs: Sequence[pool.Job], place: tuple[str, int]
-) -> Iterator[pool.Done]:
+def _names_file(scheduler: str) -> bool:
+  return scheduler.endswith('.json') or pathlib.Path(scheduler).exists()
+
+
+def run(jobs: Sequence[pool.Job], place: str) -> Iterator[pool.Done]:
   """Runs jobs on a cluster and yields those that are done, as `pool.run`.
 
   Args:
     jobs: What to do; they are begun in about this order.
-    place: Of the scheduler, see `find`.
+    place: Address of the scheduler, see `find`.
 
   Raises:
-    ClusterError: if there is no worker, or one of other versions or sources.
+    ClusterError: if there is no worker, or one of other versions or sources,
+      or if the scheduler or all workers went away.
     WorkerError: if a job failed on every worker that tried it.
   """
   import distributed
 
   if not jobs:
     return
-  address = f'tcp://{place[0]}:{place[1]}'
-  with distributed.Client(address) as client:
-    try:
-      client.wait_for_workers(1, timeout=_WORKERS_S)
-    except TimeoutError:
+  # It tells of every try to find a scheduler that is gone.
+  logging.getLogger('distributed.client').setLevel(logging.CRITICAL)
+  ours = _origin()
+  try:
+    _wait_for_workers(place)
+    with distributed.Client(place, timeout=_CONNECT_S) as client:
+      yield from _run(jobs, client, place, ours)
+  except futures_lib.CancelledError:
+    raise _gone(place, 'the connection to it is lost') from None
+  except (OSError, ImportError) as error:
+    raise _gone(place, str(error) or 'it answers nothing') from None
+
+
+def _wait_for_workers(place: str) -> None:
+  end_s = time.monotonic() + _WORKERS_S
+  while not dask_probe.ask(place, _CONNECT_S)['workers']:
+    if time.monotonic() > end_s:
       raise ClusterError(
-        f'`scheduler` must have workers: {address} had none for'
-        f' {_WORKERS_S:g} s'
-      ) from None
-    ours = _origin()
-    run_name = uuid.uuid4().hex  # Others may fly jobs of the same names.
-    futures = [
-      client.submit(
-        _work, job, ours, key=f'{run_name} {job.name}',
-        priority=-number, retries=pool.TRIES - 1,
+        f'`scheduler` must have workers: {place} had none for {_WORKERS_S:g} s'
       )
-      for number, job in enumerate(jobs)
-    ]  # fmt: skip
-    named = dict(zip((future.key for future in futures), jobs, strict=True))
+    time.sleep(_POLL_S)
+
+
+def _run(
+  jobs: Sequence[pool.Job],
+  client: object,
+  place: str,
+  ours: tuple[str, dict[str, str]],
+) -> Iterator[pool.Done]:
+  news = queue.SimpleQueue()
+  run_name = uuid.uuid4().hex  # Others may fly jobs of the same names.
+  named = {f'{run_name} {job.name}': job for job in jobs}
+  futures = [
+    client.submit(
+      _work, job, ours, key=key, priority=-number, retries=pool.TRIES - 1
+    )
+    for number, (key, job) in enumerate(named.items())
+  ]
+  for future in futures:
+    future.add_done_callback(news.put)
+  for _ in futures:
+    future = _next(news, place)
+    yield pool.Done(named[future.key], _result(future, named[future.key]))
+    future.release()
+
+
+def _next(news: queue.SimpleQueue, place: str) -> object:
+  """The next future that is done; ends when nobody works on it any more."""
+  seen_s = time.monotonic()
+  while True:
+    with contextlib.suppress(queue.Empty):
+      return news.get(timeout=_LOOK_S)
+    reason = 'it has no workers'
     try:
-      for future in distributed.as_completed(futures):
-        yield pool.Done(named[future.key], _result(future, named[future.key]))
-        future.release()
-    finally:
-      client.cancel(futures)
+      if dask_probe.ask(place, _CONNECT_S)['workers']:
+        seen_s = time.monotonic()
+    except ConnectionError as error:
+      reason = str(error)
+    if time.monotonic() - seen_s > _WORKERS_S:
+      raise _gone(place, f'for {_WORKERS_S:g} s {reason}')
+
+
+def _gone(place: str, reason: str) -> ClusterError:
+  return ClusterError(
+    f'`scheduler` went away: {place}: {reason}. What was flown is kept: when it'
+    ' runs again, the same command goes on with the rest'
+  )
 
 
 def _result(future: object, job: pool.Job) -> object:
-  error = future.exception()
+  import distributed
+
+  if future.cancelled():  # With the connection to the scheduler.
+    raise futures_lib.CancelledError
+  error = future.exception(_WORKERS_S)
   if isinstance(error, ClusterError):
     raise ClusterError(str(error))
   if error is not None:
     reason = f'{type(error).__name__}: {error}'
+    if isinstance(error, distributed.KilledWorker):
+      reason = 'each worker that tried it died'
     raise pool.WorkerError(f'{job.name} failed, at last: {reason}')
-  return future.result()
+  return future.result(_WORKERS_S)
 
 
 def _work(job: pool.Job, theirs: tuple[str, dict[str, str]]) -> object:

@@ -4,9 +4,10 @@ FOLDER is a run folder made with `waggle broadcast --raw`: every observer's
 images go to one receiver or several (--receiver=A --receiver=B), side by side;
 exit status 1 when the run's own receiver gives other events than it gave
 online, byte for byte. VIDEO is an ordinary recording, read by the timestamps
-of its container, whatever its size and rate: the camera must stand still and
-begin with the target hovering near the middle, or at --anchor. Exit status 1
-when no message is found in it, 2 on bad input.
+of its container, whatever its size and rate, or a folder of numbered pictures
+(PNG, JPEG) with --fps: the camera must stand still and begin with the target
+hovering near the middle, or at --anchor. The extra [video] reads more kinds of
+it. Exit status 1 when no message is found, 2 on bad input.
 """
 
 from collections.abc import Sequence
@@ -24,6 +25,7 @@ from waggle_tasks.experiments import (
   archive,
   capture,
   launch,
+  picture_folder,
   reader,
   recordings,
   records,
@@ -52,6 +54,9 @@ _END = flags.DEFINE_float('end', None, 'Last moment, s of the recording.')
 _SPEED = flags.DEFINE_float(
   'speed', 1.0, 'Seconds of the dance in a second of the recording.'
 )
+_FPS = flags.DEFINE_float(
+  'fps', None, 'Pictures a second, where pictures have no times of their own.'
+)
 _FOCAL_PX = flags.DEFINE_float(
   'focal_px', None, 'Focal length of the camera, in pixels.'
 )
@@ -75,13 +80,15 @@ def main(argv: Sequence[str]) -> int:
   if len(argv) != 2:
     raise flags.Error(f'takes one {ARGUMENTS}: got {argv[1:]}')
   path = pathlib.Path(argv[1])
-  return _folder(path) if path.is_dir() else _video(path)
+  if path.is_dir() and not picture_folder.found(path):
+    return _folder(path)
+  return _video(path)
 
 
 def _folder(folder: pathlib.Path) -> int:
   """Replays every capture of a run."""
   given = [
-    flag for flag in (_ROI, _ANCHOR, _START, _END, _SPEED, _FOCAL_PX,
+    flag for flag in (_ROI, _ANCHOR, _START, _END, _SPEED, _FPS, _FOCAL_PX,
                       _FOVY_DEG, _ANNOTATE)
     if flag.present
   ]  # fmt: skip
@@ -115,7 +122,7 @@ def _video(path: pathlib.Path) -> int:
     _numbers(_ANCHOR, 2, float), _SPEED.value,
   )  # fmt: skip
   with contextlib.ExitStack() as stack:
-    recording = stack.enter_context(recordings.Recording(path))
+    recording = stack.enter_context(recordings.Recording(path, _FPS.value))
     focal_px = _focal_px(recording.height)
     seen = camera.Camera(recording.width, recording.height, focal_px)
     known = agreement_lib.Agreement(camera=seen)
@@ -138,12 +145,16 @@ def _video(path: pathlib.Path) -> int:
     f' {readers[0].last_s:.2f} s'
   )
   print(reader.report(readers))
+  if recording.note:
+    print(recording.note)
   gap_s = readers[0].longest_gap_s
   if gap_s > config.Tracking().max_gap_s + 1e-6:
     print(f'Pictures are missing: {gap_s:.2f} s lie between two of them.')
   for each in readers:
     said = f'message {each.message}' if each.message else 'no message'
     print(f'{each.name}: {said}')
+  if film and film.problem:
+    raise DecodeError(film.problem)  # Last: what was read is not lost.
   return 0 if all(each.message for each in readers) else 1
 
 

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 import importlib.util
 import io
+import itertools
 import math
 import pathlib
 
@@ -49,6 +50,7 @@ def draw(
     raise FigureError(MISSING)
   import matplotlib as mpl
   from matplotlib import figure as figure_lib
+  from matplotlib import patches
 
   columns = min(len(panels), 2)
   lines = math.ceil(len(panels) / columns)
@@ -67,6 +69,12 @@ def draw(
       axis.set_axis_off()
     bar = figure.colorbar(image, ax=axes, shrink=0.8)
     bar.set_label('share of exposures that were right')
+    if any(_unflown(panel) for panel in panels):
+      # A sample of it beside the words: white could be taken for a share.
+      sample = patches.Patch(facecolor='w', edgecolor='0.5', hatch='////')
+      figure.legend(
+        handles=[sample], labels=['not flown'], loc='outside lower right'
+      )
     drawn, painted = io.BytesIO(), io.BytesIO()
     figure.savefig(drawn, format='svg', metadata={'Date': None})
     figure.savefig(painted, format='png', dpi=_DPI)
@@ -76,9 +84,15 @@ def draw(
   ]
 
 
+def _unflown(panel: envelope.Panel) -> list[tuple[object, object]]:
+  """The places of a map that were not flown."""
+  places = itertools.product(panel.downs, panel.acrosses)
+  return [place for place in places if not panel.cells.get(place)]
+
+
 def _panel(panel: envelope.Panel, axis: object) -> object:
   """Draws one map and returns its image."""
-  from matplotlib import colors
+  from matplotlib import colors, patches
 
   shares = np.full((len(panel.downs), len(panel.acrosses)), np.nan)
   for i, down in enumerate(panel.downs):
@@ -91,6 +105,12 @@ def _panel(panel: envelope.Panel, axis: object) -> object:
   image = axis.imshow(shares, colours, vmin=0, vmax=1, aspect='auto')
   axis.set_xticks(range(len(panel.acrosses)), map(heat.label, panel.acrosses))
   axis.set_yticks(range(len(panel.downs)), map(heat.label, panel.downs))
+  axis.set_facecolor('w')
+  for down, across in _unflown(panel):
+    place = panel.acrosses.index(across) - 0.5, panel.downs.index(down) - 0.5
+    axis.add_patch(
+      patches.Rectangle(place, 1, 1, fc='w', ec='0.5', hatch='////', lw=0)
+    )
   axis.hlines(
     np.arange(len(panel.downs)) - 0.5, -0.5, shares.shape[1] - 0.5, 'w'
   )

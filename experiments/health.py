@@ -7,10 +7,11 @@ import os
 import pathlib
 import platform
 import shutil
+import sys
 
 from packaging import requirements, specifiers
+from packaging import version as version_lib
 
-from waggle_tasks import runtime
 from waggle_tasks.experiments import dependencies, gl
 
 # Three observers' images of a broadcast, recorded without loss, are 0.3 GB:
@@ -50,9 +51,38 @@ def check_requirement(line: str, version: str | None) -> Check:
   found = f'{need.name} {version or "is not installed"}'
   if need.specifier:
     found += f' (needs {need.specifier})'
-  if version and need.specifier.contains(version, prereleases=True):
-    return Check(found)
+  try:
+    if version and need.specifier.contains(version, prereleases=True):
+      return Check(found)
+  except version_lib.InvalidVersion:
+    pass  # A build of one's own, which nothing can be said about.
   return Check(found, f"pip install '{need.name}{need.specifier}'")
+
+
+def check_dependency(need: requirements.Requirement) -> Check:
+  """Checks what is installed for a dependency, and what its import brings."""
+  module = dependencies.module(need.name)
+  there = dependencies.providers(need.name)
+  install = f"pip install '{need.name}{need.specifier}'"
+  anew = f'pip uninstall -y {" ".join(there)} && {install}'
+  if len(there) > 1:
+    names = ' and '.join(f'{name} {version}' for name, version in there.items())
+    return Check(f'{names} overwrite each other: both bring {module}', anew)
+  for name, version in there.items():
+    check = check_requirement(f'{name}{need.specifier}', version)
+    if check.mend:
+      return Check(check.found, install if name == need.name else anew)
+  try:
+    brought = dependencies.version(need.name)
+  except dependencies.DependencyError as error:
+    if there:
+      return Check(f'{need.name}: {error}', anew)
+    brought = None
+  check = check_requirement(str(need), brought)
+  if check.mend and there:
+    place = sys.modules[module].__file__
+    return Check(f'{check.found}, imported from {place}', anew)
+  return check
 
 
 def check_versions() -> Iterator[Check]:
@@ -67,7 +97,20 @@ def check_versions() -> Iterator[Check]:
   yield Check(f'{dependencies.DISTRIBUTION} {declared["Version"]}')
   yield check_python(platform.python_version(), declared['Requires-Python'])
   for need in dependencies.declared():
-    yield check_requirement(str(need), runtime.installed(need.name))
+    yield check_dependency(need)
+
+
+def require() -> None:
+  """Refuses to begin with other versions than those that are needed.
+
+  Raises:
+    DependencyError: naming the first that is not as it must be.
+  """
+  for check in check_versions():
+    if check.mend:
+      raise dependencies.DependencyError(
+        f'{check.found}; mend it: {check.mend}'
+      )
 
 
 def check_rendering(timeout_s: float, versions_ok: bool) -> Iterator[Check]:

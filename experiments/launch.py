@@ -22,7 +22,7 @@ import types
 from absl import flags
 
 from waggle_tasks import errors, runtime
-from waggle_tasks.experiments import files, gl, terminal
+from waggle_tasks.experiments import files, gl, health, terminal
 from waggle_tasks.protocol import checks
 
 BAD_INPUT = 2
@@ -69,6 +69,7 @@ def _run(name: str, argv: list[str], check_versions: bool) -> int:
       files.check_text(argument, flags.Error)
     if check_versions:
       runtime.require_versions()
+      health.require()
     module = importlib.import_module(name)
     if {'--help', '-h'} & set(argv[1:]):
       print(help_text(program, module))

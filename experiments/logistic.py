@@ -7,6 +7,9 @@ import math
 import numpy as np
 from scipy import optimize, special
 
+# Log odds that a search which ends at slopes of 1e-5 cannot tell from none.
+_NOTHING = 1e-4
+
 
 @dataclasses.dataclass(frozen=True)
 class Fit:
@@ -66,8 +69,9 @@ def fit(
     return float(np.logaddexp(0.0, -margins).sum()), gradient
 
   found = optimize.minimize(loss, np.zeros(design.shape[1]), jac=True)
-  slopes = found.x[1:] / scale
-  intercept = found.x[0] - slopes @ centre
+  weights = np.where(np.abs(found.x) < _NOTHING, 0.0, found.x)
+  slopes = weights[1:] / scale
+  intercept = weights[0] - slopes @ centre
   return Fit(
     float(intercept), dict(zip(predictors, map(float, slopes), strict=True))
   )

@@ -24,6 +24,7 @@ COMMANDS = {
   'ablate': 'Take parts out of the receivers and show what they are good for.',
   'boundary': 'Show that receivers use their own images and nothing else.',
   'bench_video': 'Time a run with and without its video and report.',
+  'claims': 'Fly a part of every table again and compare with the documents.',
   'doctor': 'Check that this machine can run the tasks, and say what to mend.',
 }
 

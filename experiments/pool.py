@@ -33,6 +33,10 @@ class WorkerError(errors.WaggleError):
   """A job that failed in every worker that tried it."""
 
 
+class _JobError(Exception):
+  """What a job raised in its worker."""
+
+
 @dataclasses.dataclass(frozen=True)
 class Job:
   """Something to do in a worker.
@@ -101,8 +105,10 @@ def run(
           try:
             yield from _hear(worker)
             continue
-          except (EOFError, ConnectionError) as error:
-            reason = str(error) or 'its process died'
+          except _JobError as error:
+            reason = str(error)
+          except (EOFError, OSError):  # Also in the middle of a message.
+            reason = _death(worker)
         elif worker.job and time.monotonic() - worker.heard_s > silence_s:
           reason = f'no sign of life for {silence_s:g} s'
         else:
@@ -141,7 +147,7 @@ def _hear(worker: _Worker) -> Iterator[Progress | Done]:
   kind, value = worker.pipe.recv()
   job, worker.heard_s = worker.job, time.monotonic()
   if kind == 'failed':
-    raise ConnectionError(value)
+    raise _JobError(value)
   if kind == 'done':
     worker.job = None
     yield Done(job, value)
@@ -160,6 +166,15 @@ def _retry(
       f'{worker.job.name} failed {TRIES} times, at last: {reason}'
     )
   waiting.insert(0, worker.job)
+
+
+def _death(worker: _Worker) -> str:
+  """How a worker's process ended, which tells what to look for."""
+  worker.process.join(1.0)
+  code = worker.process.exitcode
+  if code is None or code >= 0:
+    return 'its process died'
+  return f'its process was ended by {signal.Signals(-code).name}'
 
 
 def _end(worker: _Worker) -> None:

@@ -5,15 +5,18 @@ import dataclasses
 import datetime
 import functools
 import hashlib
-import importlib.metadata
 import pathlib
 import platform
 import shlex
 import types
+from typing import TYPE_CHECKING
 
 import waggle_tasks
 from waggle_tasks import agents, arenas, entities, errors, experiments
 from waggle_tasks.experiments import dependencies, source_files
+
+if TYPE_CHECKING:
+  from dm_control import mjcf
 
 
 class SourceError(errors.WaggleError):
@@ -61,21 +64,23 @@ def source_digest(hashes: dict[str, str]) -> str:
 
 @functools.cache
 def versions() -> dict[str, str]:
-  """Version of this package, of Python and of every dependency."""
+  """Version of this package, of Python and of every dependency's module."""
   out = {
     'waggle-tasks': waggle_tasks.__version__,
     'python': platform.python_version(),
   }
   for need in dependencies.declared():
-    out[need.name] = importlib.metadata.version(need.name)
+    out[need.name] = dependencies.version(need.name) or 'unknown'
   return out
 
 
-def renderer_name() -> str:
-  """The GL renderer of the context that is current, such as 'llvmpipe'."""
+def renderer_name(physics: 'mjcf.Physics') -> str:
+  """The GL renderer that draws a simulation, such as 'llvmpipe'."""
   from OpenGL import GL
 
-  name = GL.glGetString(GL.GL_RENDERER)
+  # Its context may be current in a thread of its own, and only there.
+  with physics.contexts.gl.make_current() as executor:
+    name = executor.call(GL.glGetString, GL.GL_RENDERER)
   return name.decode() if name else 'unknown'
 
 

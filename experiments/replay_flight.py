@@ -12,7 +12,6 @@ import hashlib
 from waggle_tasks.agents import receiver, receivers
 from waggle_tasks.experiments import (
   evaluator,
-  provenance,
   records,
   spoilers,
   sweep_cases,
@@ -61,7 +60,7 @@ def fly(
     **sweep_flight.head(case),
     'identity': identity,
     'receiver': receiver_name,
-    'renderer': provenance.renderer_name(),
+    'renderer': tapes[0].renderer,
     'simulated_s': round(tapes[0].times_s[-1], 2),
     'passed': all(each['right'] for each in outcomes),
     'outcomes': outcomes,

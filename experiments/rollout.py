@@ -117,7 +117,7 @@ def play(
     {name: np.stack([p[name] for p in truth]) for name in truth[0]},
     tuple(contacts),
     events,
-    provenance.renderer_name(),
+    provenance.renderer_name(physics),
     dict(zip(events, tracer.traces(), strict=True)),
     {name: np.stack([d[name] for d in drifts]) for name in drifts[0]},
     seen.places_px(),

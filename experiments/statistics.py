@@ -5,6 +5,7 @@ scene (paper, section 'Controls and supplemental suite').
 """
 
 from collections.abc import Sequence
+import functools
 
 import numpy as np
 from scipy import stats
@@ -13,6 +14,7 @@ LEVEL = 0.95
 _RESAMPLES = 10_000
 
 
+@functools.cache  # Large maps ask for the same few again and again.
 def clopper_pearson(successes: int, trials: int) -> tuple[float, float]:
   """The exact 95 % interval of a proportion (Clopper and Pearson 1934).
 
@@ -24,6 +26,7 @@ def clopper_pearson(successes: int, trials: int) -> tuple[float, float]:
   return float(interval.low), float(interval.high)
 
 
+@functools.cache
 def upper_limit(events: int, trials: int) -> float:
   """The exact one-sided 95 % upper limit of a proportion.
 

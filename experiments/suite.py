@@ -98,7 +98,8 @@ def _cases() -> tuple[suites.Case, ...]:
 
 def _own(path: str) -> tuple[suites.Case, ...]:
   try:
-    rows = json.loads(pathlib.Path(path).read_text(encoding='utf-8'))
+    # Editors on Windows begin such a file with a mark, which is no JSON.
+    rows = json.loads(pathlib.Path(path).read_text(encoding='utf-8-sig'))
   except (OSError, ValueError) as error:
     raise suites.SuiteError(
       f'`suite` must be a readable JSON file: {path}: {error}'

@@ -81,10 +81,7 @@ def totals(rows: Sequence[Row]) -> list[str]:
     lines.insert(
       0,
       _total('messages correct', sum(correct), sum(exposures), 'correct', rows)
-      + _interval(
-        'bootstrap by broadcast',
-        statistics.bootstrap_by_broadcast(correct, exposures),
-      ),
+      + _of_messages(correct, exposures),
     )
   return lines
 
@@ -96,6 +93,22 @@ def _total(
   if all(row['published'] for row in rows):
     line += f', paper {sum(row["published"][key] for row in rows)}/{of}'
   return line
+
+
+def _of_messages(correct: Sequence[int], exposures: Sequence[int]) -> str:
+  """The interval of a share of messages, which broadcasts have in common.
+
+  Broadcasts that are all alike have no spread to draw from. Where all or none
+  of their messages are correct, the broadcasts themselves are counted.
+  """
+  drawn = statistics.bootstrap_by_broadcast(correct, exposures)
+  if drawn[0] < drawn[1]:
+    return _interval('bootstrap by broadcast', drawn)
+  if sum(correct) in (0, sum(exposures)):
+    whole = sum(c == e for c, e in zip(correct, exposures, strict=True))
+    exact = statistics.clopper_pearson(whole, len(correct))
+    return _interval('Clopper-Pearson, by broadcast', exact)
+  return '; no interval: every broadcast has the same share'
 
 
 def _interval(method: str, interval: tuple[float, float]) -> str:

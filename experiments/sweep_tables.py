@@ -66,31 +66,44 @@ def _panel(panel: envelope.Panel) -> str:
 
 
 def _cell(rows: Sequence[envelope.Row] | None) -> str:
-  """A cell such as '5/5 48-100'."""
   if not rows:
     return _NOTHING
   got = envelope.count(rows)
-  low, high = statistics.clopper_pearson(got.right, got.exposures)
-  return f'{got.right}/{got.exposures} {low * 100:.0f}-{high * 100:.0f}'
+  return cell(got.right, got.exposures)
+
+
+def cell(right: int, exposures: int) -> str:
+  """A cell such as '5/5 48-100'."""
+  low, high = statistics.clopper_pearson(right, exposures)
+  return f'{right}/{exposures} {low * 100:.0f}-{high * 100:.0f}'
+
+
+def right_line(right: int, exposures: int) -> str:
+  """How many exposures were right, with limits."""
+  low, high = statistics.clopper_pearson(right, exposures)
+  return (
+    f'right: {right}/{exposures} exposures ({right / exposures:.2%}); 95 %'
+    f' interval {low:.2%} to {high:.2%} (Clopper-Pearson)'
+  )
+
+
+def event_line(name: str, events: int, exposures: int) -> str:
+  """How often something happened that must not, with its limit."""
+  limit = statistics.upper_limit(events, exposures)
+  return (
+    f'{name}: {events} in {exposures} exposures; at most {limit:.3%}'
+    ' (one-sided 95 % limit, Clopper-Pearson)'
+  )
 
 
 def totals(rows: Sequence[envelope.Row]) -> list[str]:
   """The sums over all exposures and their limits."""
   got = envelope.count(rows)
   n = got.exposures
-  low, high = statistics.clopper_pearson(got.right, n)
   lines = [
-    f'right: {got.right}/{n} exposures ({got.right / n:.2%}); 95 % interval'
-    f' {low:.2%} to {high:.2%} (Clopper-Pearson)',
-    *(
-      f'{name}: {events} in {n} exposures; at most'
-      f' {statistics.upper_limit(events, n):.3%} (one-sided 95 % limit,'
-      ' Clopper-Pearson)'
-      for name, events in (
-        ('wrong messages', got.wrong),
-        ('unauthorised motions', got.unauthorised),
-      )
-    ),
+    right_line(got.right, n),
+    event_line('wrong messages', got.wrong, n),
+    event_line('unauthorised motions', got.unauthorised, n),
   ]
   if stages := envelope.flaws_of_right(rows):
     listed = ', '.join(f'{name} {count}' for name, count in stages.items())

@@ -6,6 +6,7 @@ import dataclasses
 import numpy as np
 
 from waggle_tasks import registry, scenario
+from waggle_tasks.experiments import provenance
 from waggle_tasks.protocol import reference, timing
 
 Stream = Iterator[tuple[np.ndarray, float]]  # Images and their times.
@@ -19,12 +20,14 @@ class Tape:
 
   Attributes:
     first: (H, W, 3) uint8.
+    renderer: The GL renderer that drew them.
     times_s: Their times.
     parts: For each image where it differs from the first and what is there, or
       None.
   """
 
   first: np.ndarray
+  renderer: str
   times_s: list[float] = dataclasses.field(default_factory=list)
   parts: list[_Part | None] = dataclasses.field(default_factory=list)
 
@@ -68,7 +71,10 @@ def record(
     timestep = environment.reset()
     homes = [each['position_m'].copy() for each in timestep.observation]
     rest = [reference.Reference.hover(home).to_array() for home in homes]
-    tapes = [Tape(each['camera'].copy()) for each in timestep.observation]
+    renderer = provenance.renderer_name(environment.physics)
+    tapes = [
+      Tape(each['camera'].copy(), renderer) for each in timestep.observation
+    ]
     while True:
       for tape, seen in zip(tapes, timestep.observation, strict=True):
         tape.add(seen['camera'], float(seen['time_s']))

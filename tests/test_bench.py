@@ -173,6 +173,13 @@ def test_a_process_that_measures_has_one_core_and_one_drawing_thread() -> None:
     assert worker.submit(os.sched_getaffinity, 0).result() == {core}
 
 
+def test_a_process_that_dies_while_it_is_measured_is_told_in_one_line() -> None:
+  with pytest.raises(
+    processes.ProcessError, match='a process died while it was measured: see'
+  ):
+    processes.alone(os._exit, 1)
+
+
 def test_a_stage_inside_another_is_not_counted_twice() -> None:
   timer = stages.Timer(itertools.count().__next__)  # A second for each look.
   inner = timer.timed(lambda: None, 'inner', '')

@@ -1,14 +1,20 @@
 """`waggle doctor`: what it checks, and that each failure names its mend."""
 
+from collections.abc import Callable
 import itertools
 import os
 import pathlib
+import re
 import subprocess
 import sys
+import types
 
+import cv2
+from packaging import requirements
 import pytest
 
-from waggle_tasks.experiments import dependencies, gl, health
+from waggle_tasks import runtime
+from waggle_tasks.experiments import dependencies, gl, health, provenance
 
 DOCTOR = 'from waggle_tasks.experiments import main; sys.exit(main.main())'
 
@@ -98,6 +104,7 @@ def test_a_file_cannot_hold_runs() -> None:
     ('a==1', None, 'a is not installed (needs ==1)', "pip install 'a==1'"),
     ('tqdm', None, 'tqdm is not installed', "pip install 'tqdm'"),
     ('a>=1', '2.0rc1', 'a 2.0rc1 (needs >=1)', ''),
+    ('a>=1', 'mine', 'a mine (needs >=1)', "pip install 'a>=1'"),
   ],
 )
 def test_a_version_is_checked_against_its_pin(
@@ -116,6 +123,107 @@ def test_python_is_checked_against_the_packages_range(
   check = health.check_python(version, '>=3.11,<3.13')
   assert (check.mend == '') is ok
   assert check.found == f'python {version} (needs >=3.11,<3.13)'
+
+
+HEADLESS = requirements.Requirement('opencv-python-headless<6,>=5')
+OPENCV = ('opencv-python', 'opencv-contrib-python')
+
+
+@pytest.fixture
+def installed(
+  tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch
+) -> Callable[..., None]:
+  """Makes another distribution seem to be installed."""
+
+  def install(name: str, version: str) -> None:
+    home = tmp_path / f'{name.replace("-", "_")}-{version}.dist-info'
+    home.mkdir()
+    (home / 'METADATA').write_text(f'Name: {name}\nVersion: {version}\n')
+    monkeypatch.syspath_prepend(tmp_path)
+    monkeypatch.setenv('PYTHONPATH', str(tmp_path))
+
+  return install
+
+
+@pytest.mark.parametrize('name', [*OPENCV, 'opencv-contrib-python-headless'])
+@pytest.mark.parametrize('version', ['4.14.0.92', '5.0.0.93'])
+def test_two_packages_that_bring_one_module_are_named(
+  name: str, version: str, installed: Callable[..., None]
+) -> None:
+  installed(name, version)
+  check = health.check_dependency(HEADLESS)
+  assert f'{name} {version}' in check.found
+  assert check.found.endswith('overwrite each other: both bring cv2')
+  both = re.search(r'pip uninstall -y (.+) && pip install (.+)', check.mend)
+  assert {*both[1].split()} == {name, HEADLESS.name}
+  assert both[2] == "'opencv-python-headless<6,>=5'"
+
+
+def test_nothing_flies_with_two_packages_of_one_module(
+  installed: Callable[..., None], waggle: Callable[..., object]
+) -> None:
+  installed('opencv-python', '4.14.0.92')
+  child = waggle('broadcast')
+  assert child.returncode == 2
+  (line,) = child.stderr.splitlines()
+  assert line.startswith('waggle broadcast: opencv-python 4.14.0.92 and ')
+  assert '; mend it: pip uninstall -y opencv-python ' in line
+  child = waggle('doctor')
+  assert child.returncode == 1
+  assert len(failures(child.stdout)) == 1
+
+
+@pytest.mark.parametrize('name', OPENCV)
+def test_another_package_that_brings_the_same_module_will_do(
+  name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+  only = {name: '5.0.0.93'}
+  monkeypatch.setattr(runtime, 'installed', only.get)
+  assert health.check_dependency(HEADLESS).mend == ''
+  only[name] = '4.14.0.92'
+  check = health.check_dependency(HEADLESS)
+  assert check.found == f'{name} 4.14.0.92 (needs <6,>=5)'
+  assert check.mend.startswith(f'pip uninstall -y {name} && pip install ')
+
+
+def test_a_module_is_believed_and_not_what_was_installed(
+  monkeypatch: pytest.MonkeyPatch,
+) -> None:
+  monkeypatch.setattr(cv2, '__version__', '4.14.0')
+  provenance.versions.cache_clear()
+  try:
+    assert provenance.versions()[HEADLESS.name] == '4.14.0'
+  finally:
+    provenance.versions.cache_clear()
+  with pytest.raises(
+    dependencies.DependencyError,
+    match=r'headless 4\.14\.0 \(needs .+\), imported from .+; mend it: pip un',
+  ):
+    health.require()
+
+
+@pytest.mark.parametrize(
+  ('module', 'said'),
+  [
+    (None, 'cv2 cannot be imported: ModuleNotFoundError: '),
+    (types.ModuleType('cv2'), 'cv2 is a folder that holds no module'),
+  ],
+)
+def test_a_module_that_is_not_whole_is_named(
+  module: types.ModuleType | None, said: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+  monkeypatch.setitem(sys.modules, 'cv2', module)
+  check = health.check_dependency(HEADLESS)
+  assert check.found.startswith(f'opencv-python-headless: {said}')
+  assert check.mend.startswith('pip uninstall -y opencv-python-headless && ')
+
+
+def test_what_was_never_installed_is_said_so() -> None:
+  need = requirements.Requirement('no-such-thing>=1')
+  assert health.check_dependency(need) == health.Check(
+    'no-such-thing is not installed (needs >=1)',
+    "pip install 'no-such-thing>=1'",
+  )
 
 
 def test_every_declared_dependency_is_checked_and_no_extra() -> None:

@@ -1,10 +1,18 @@
 """Rendering in a child process, and what is said when it fails."""
 
+import contextlib
 import pathlib
+import subprocess
+import sys
+import threading
+import types
 
+from dm_control._render import executor
+from OpenGL import GL
 import pytest
 
-from waggle_tasks.experiments import gl
+from waggle_tasks import registry
+from waggle_tasks.experiments import gl, provenance, rollout, tape
 
 APT = 'apt-get install libegl1 libgl1 libgl1-mesa-dri'
 
@@ -101,3 +109,48 @@ def test_a_setting_that_cannot_render_is_named_in_one_line(
   assert line.startswith('cannot render with MUJOCO_GL=')
   assert words in line
   assert '\n' not in line
+
+
+def test_a_renderer_that_draws_in_a_thread_of_its_own_has_its_name(
+  monkeypatch: pytest.MonkeyPatch,
+) -> None:
+  offloading = executor.OffloadingRenderExecutor()
+
+  def say(name: int) -> bytes | None:
+    here = threading.current_thread() is offloading.thread
+    return b'softpipe' if here and name == GL.GL_RENDERER else None
+
+  @contextlib.contextmanager
+  def make_current() -> object:
+    with offloading.execution_context() as context:
+      yield context
+
+  monkeypatch.setattr(GL, 'glGetString', say)
+  context = types.SimpleNamespace(make_current=make_current)
+  physics = types.SimpleNamespace(contexts=types.SimpleNamespace(gl=context))
+  assert provenance.renderer_name(physics) == 'softpipe'
+  offloading.terminate()
+
+
+def test_results_say_which_renderer_drew_them() -> None:
+  scene = registry.find('no_send', observers=1, duration_s=0.2)
+  name = gl.render_once().renderer
+  assert rollout.run(scene, 'klt').renderer == name
+  (taped,) = tape.record(scene, lambda amount: None)
+  assert taped.renderer == name
+
+
+def test_osmesa_has_its_name(monkeypatch: pytest.MonkeyPatch) -> None:
+  monkeypatch.setenv('MUJOCO_GL', 'osmesa')
+  monkeypatch.delenv('PYOPENGL_PLATFORM', raising=False)
+  there = gl.render_once()
+  if there.error:
+    pytest.skip(f'needs OSMesa: {there.error}')
+  code = (
+    'from waggle_tasks import registry\n'
+    'from waggle_tasks.experiments import rollout\n'
+    "scene = registry.find('no_send', observers=1, duration_s=0.2)\n"
+    "print(rollout.run(scene, 'klt').renderer)"
+  )
+  said = subprocess.check_output([sys.executable, '-c', code], text=True)
+  assert said.strip() == there.renderer

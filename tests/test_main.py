@@ -110,3 +110,13 @@ def test_a_launcher_runs_as_a_module_too(waggle: Waggle) -> None:
     check=True,
   )
   assert child.stdout == waggle('doctor', '--help').stdout
+
+
+def test_the_package_runs_as_a_module_like_the_command(waggle: Waggle) -> None:
+  child = subprocess.run(
+    [sys.executable, '-m', 'waggle_tasks', '--version'],
+    capture_output=True,
+    text=True,
+    check=True,
+  )
+  assert child.stdout == waggle('--version').stdout

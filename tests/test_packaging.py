@@ -4,6 +4,7 @@ from collections.abc import Iterator
 import email
 import importlib
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
@@ -119,6 +120,27 @@ def test_the_pins_that_work_are_declared(wheel: zipfile.ZipFile) -> None:
   assert declared.get_all('Provides-Extra') == [
     'video', 'cluster', 'analysis', 'test', 'dev',
   ]  # fmt: skip
+
+
+def test_the_description_needs_no_file_beside_it(
+  wheel: zipfile.ZipFile,
+) -> None:
+  declared = email.message_from_string(read(wheel, 'METADATA'))
+  text = declared.get_payload()
+  assert '# waggle_tasks' in text
+  for target in re.findall(r'\]\(([^)]*)\)', text):
+    assert target.startswith(('https://', '#')), target
+  assert 'docs/envelope.md has the commands' in ' '.join(text.split())
+  assert 'START climbs and returns' in ' '.join(text.split())
+  assert '<!--' not in text
+
+
+def test_the_classifiers_name_the_versions_that_are_allowed(
+  wheel: zipfile.ZipFile,
+) -> None:
+  declared = email.message_from_string(read(wheel, 'METADATA'))
+  named = {each.rpartition(' ')[2] for each in declared.get_all('Classifier')}
+  assert named >= {'3.11', '3.12'}
 
 
 def test_the_wheel_is_imported_from_where_it_lies(

@@ -144,3 +144,13 @@ def test_the_command_starts_on_a_broken_pair_and_says_so_in_one_line() -> None:
   assert child.returncode == 2
   (line,) = child.stderr.splitlines()
   assert line.startswith('waggle broadcast: dm-control ')
+
+
+def test_the_imported_mujoco_is_believed_and_not_the_installed_one() -> None:
+  child = run_python(
+    "import waggle_tasks, mujoco\nmujoco.__version__ = '4.0.0'\n"
+    "waggle_tasks.load('no_send')"
+  )
+  assert child.returncode == 1
+  last = child.stderr.splitlines()[-1]
+  assert 'cannot run on the installed mujoco 4.0.0: mend it with' in last

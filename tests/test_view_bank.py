@@ -238,6 +238,34 @@ def test_swaying_cameras_read_the_message(
   assert [each.decoded for each in verdict.outcomes] == ['000010'] * 3
 
 
+@pytest.mark.parametrize(
+  ('aside_m', 'earlier_s', 'is_read'),
+  [
+    (0.36, 0.2, True),
+    (0.5, 0.0, True),
+    (-0.5, -0.2, True),
+    # Their ways cross.
+    (-0.36, 0.2, False),
+    (0.36, 1.0, False),
+    # Who dances alone beside the middle may be anybody.
+    (0.36, 4.0, False),
+    (-0.5, 4.0, False),
+  ],
+)
+def test_of_two_dancers_the_one_in_the_middle_is_read_or_none(
+  aside_m: float, earlier_s: float, is_read: bool
+) -> None:
+  other = message_path('110100')
+
+  def beside(image: np.ndarray, time_s: float) -> np.ndarray:
+    x_m, z_m = other(max(time_s + earlier_s, 0.0))
+    return draw(aside_m + x_m, z_m, 2.7, 0.0, image)
+
+  events = watch(message_path('001011'), MESSAGE_S, 2.7, spoil=beside)
+  assert {*messages(events)} <= {'001011'}
+  assert messages(events) or not is_read
+
+
 def test_black_images_are_read_as_nothing() -> None:
   assert watch(message_path('000010'), 9.0, spoil=lambda *_: BLACK) == []
 

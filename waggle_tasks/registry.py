@@ -3,13 +3,17 @@
 import dataclasses
 
 from dm_control import composer
+import mujoco
 
+from waggle_tasks import runtime
 from waggle_tasks import scenario as scenario_lib
 from waggle_tasks.arenas import flight_room
 from waggle_tasks.entities import observer, performer
 from waggle_tasks.protocol import checks, decoys
 from waggle_tasks.tasks import broadcast, controls, copies
 from waggle_tasks.tasks import parts as parts_lib
+
+runtime.require_versions(mujoco.__version__)
 
 Scenario = scenario_lib.Scenario
 

@@ -84,13 +84,19 @@ def version_problem(mujoco: str | None, dm_control: str | None) -> str | None:
   )
 
 
-def require_versions() -> None:
-  """Checks the installed pair.
+def require_versions(mujoco: str | None = None) -> None:
+  """Checks the pair of dm-control and mujoco.
+
+  Args:
+    mujoco: Version of the mujoco that was imported, which may not be the one
+      that was installed; None before it is imported.
 
   Raises:
     VersionError: dm-control cannot run on the installed mujoco.
   """
-  problem = version_problem(installed('mujoco'), installed('dm-control'))
+  problem = version_problem(
+    mujoco or installed('mujoco'), installed('dm-control')
+  )
   if problem:
     raise VersionError(problem, name='mujoco')
 

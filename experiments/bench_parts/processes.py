@@ -7,11 +7,14 @@ threads it draws with is settled when it is loaded.
 
 from collections.abc import Callable, Iterator
 from concurrent import futures
+from concurrent.futures import process
 import contextlib
 import multiprocessing
 import os
 import time
 from typing import TypeVar
+
+from waggle_tasks import errors
 
 _Result = TypeVar('_Result')
 
@@ -20,6 +23,10 @@ Clock = Callable[[], float]
 # Mesa's software renderers (https://docs.mesa3d.org/drivers/llvmpipe.html).
 _SOFTWARE = ('llvmpipe', 'softpipe')
 _THREADS = ('OMP_NUM_THREADS', 'OPENBLAS_NUM_THREADS')
+
+
+class ProcessError(errors.WaggleError):
+  """A process to measure in that died."""
 
 
 def cores() -> list[int]:
@@ -49,10 +56,19 @@ def worker(core: int | None = None) -> Iterator[futures.Executor]:
 
   Args:
     core: The one core that it may run on; None for all of them.
+
+  Raises:
+    ProcessError: if it died.
   """
   context = multiprocessing.get_context('spawn')
-  with futures.ProcessPoolExecutor(1, context, _prepare, (core,)) as executor:
-    yield executor
+  try:
+    with futures.ProcessPoolExecutor(1, context, _prepare, (core,)) as executor:
+      yield executor
+  except process.BrokenProcessPool:
+    raise ProcessError(
+      'a process died while it was measured: see whether memory ran out, and'
+      ' measure again'
+    ) from None
 
 
 def alone(function: Callable[..., _Result], *arguments: object) -> _Result:

@@ -1,4 +1,4 @@
-"""Where everybody flew: from above, in numbers, and how near to each other."""
+"""Where everybody flew in numbers, and how near to each other."""
 
 import itertools
 
@@ -6,11 +6,9 @@ import numpy as np
 
 from waggle_tasks.agents import observer_agent
 from waggle_tasks.experiments import archive
-from waggle_tasks.experiments.pages import markup, plot
+from waggle_tasks.experiments.pages import markup
 from waggle_tasks.tasks import safety
 
-_SIDE = 460.0
-_MARGIN_M = 0.25
 _PAIRS = 10  # The nearest ones; many observers have many pairs.
 
 
@@ -81,77 +79,3 @@ def distances(run: archive.Run) -> markup.Markup:
     + (note if left_out else '')
     + '.',
   )
-
-
-def plan(run: archive.Run) -> markup.Markup:
-  """The room from above: starts, commands and ways flown."""
-  ways_m = {name: way[:, :2] for name, way in run.positions_m.items()}
-  goals = {name: commanded(run, name) for name in run.events}
-  spots = list(ways_m.values())
-  spots += [goal[1][None, :2] for goal in goals.values() if goal]
-  spots = np.concatenate(spots)
-  low, high = spots.min(axis=0) - _MARGIN_M, spots.max(axis=0) + _MARGIN_M
-  zoom = _SIDE / (high - low).max()
-  width, height = (high - low) * zoom
-  x = plot.Scale(low[0], high[0], 50.0, 50.0 + width)
-  y = plot.Scale(low[1], high[1], 12.0 + height, 12.0)
-  out = [_axes(x, y)]
-  for name, way_m in ways_m.items():
-    out.append(plot.path(x(way_m[:, 0]), y(way_m[:, 1]), class_='line a'))
-    begin_x, begin_y = float(x(way_m[0, 0])), float(y(way_m[0, 1]))
-    shape = _mark(begin_x, begin_y, name == 'performer')
-    goal = goals.get(name)
-    if goal is not None:
-      out.append(_goal(float(x(goal[1][0])), float(y(goal[1][1]))))
-    label = name.removeprefix('observer_')
-    out += [shape, plot.text(begin_x + 9, begin_y + 14, label, class_='tick')]
-  return markup.tag(
-    'svg', *out, viewBox=f'0 0 {width + 70:.0f} {height + 92:.0f}',
-    role='img', class_='plan', aria_label='the room from above',
-    style=f'max-width:{width + 70:.0f}px',
-  )  # fmt: skip
-
-
-def _mark(x: float, y: float, performer: bool) -> markup.Markup:
-  if performer:
-    outline = f'M{x:.1f} {y - 7:.1f}l7 12h-14z'
-    return markup.tag('path', d=outline, class_='performer')
-  return markup.tag('circle', cx=x, cy=y, r=5, class_='start')
-
-
-def _goal(x: float, y: float) -> markup.Markup:
-  cross = f'M{x - 6:.1f} {y - 6:.1f}l12 12m0 -12l-12 12'
-  return markup.tag('path', d=cross, class_='goal')
-
-
-def _axes(x: plot.Scale, y: plot.Scale) -> markup.Markup:
-  out = []
-  for tick in x.ticks():
-    at = float(x(tick))
-    out.append(
-      markup.tag('line', x1=at, x2=at, y1=y.end, y2=y.begin, class_='grid')
-    )
-    out.append(plot.text(at, y.begin + 14, f'{tick:g}', class_='tick middle'))
-  for tick in y.ticks():
-    at = float(y(tick))
-    out.append(
-      markup.tag('line', x1=x.begin, x2=x.end, y1=at, y2=at, class_='grid')
-    )
-    out.append(plot.text(x.begin - 6, at + 4, f'{tick:g}', class_='tick end'))
-  out.append(plot.text(x.end, y.begin + 30, 'world x, m', class_='tick end'))
-  out.append(plot.text(4, y.end + 2, 'y, m', class_='tick'))
-  row = y.begin + 58
-  out += [
-    _mark(x.begin, row - 4, True),
-    plot.text(x.begin + 12, row, 'performer', class_='tick'),
-    _mark(x.begin + 90, row - 4, False),
-    plot.text(x.begin + 100, row, 'start', class_='tick'),
-    _goal(x.begin + 156, row - 4),
-    plot.text(x.begin + 168, row, 'commanded', class_='tick'),
-    markup.tag(
-      'line', x1=x.begin + 250, x2=x.begin + 272, y1=row - 4, y2=row - 4,
-      class_='line a',
-    ),
-    plot.text(x.begin + 277, row, 'flown', class_='tick'),
-  ]  # fmt: skip
-  return markup.join(out)

@@ -9,12 +9,13 @@ import pathlib
 
 from waggle_tasks.agents import config as config_lib
 from waggle_tasks.agents import receivers
-from waggle_tasks.experiments import archive, palette, story
+from waggle_tasks.experiments import archive, changes, palette, story
 from waggle_tasks.experiments.pages import (
   document,
   flights,
   gesture_plots,
   markup,
+  room,
   signals,
   timelines,
 )
@@ -24,6 +25,12 @@ _VIDEOS = {'.webm': 'video/webm', '.mp4': 'video/mp4'}
 _DATA = (
   'config.json', 'events.jsonl', 'result.json', 'provenance.json',
   archive.TRACES, archive.POSITIONS,
+)  # fmt: skip
+
+# Of a scenario, what its one line says anyhow.
+_TOLD = (
+  'control', 'payload', 'heading_step_deg', 'distance_unit_m', 'observers',
+  'layout', 'distance_m', 'jitter_m', 'seed',
 )  # fmt: skip
 
 tag = markup.tag
@@ -82,7 +89,12 @@ def _facts(run: archive.Run) -> dict[str, object]:
     for name, events in run.events.items()
   }
   sent = [[s.begin_s, s.end_s, str(s.symbol)] for s in run.sent]
-  return {'end': run.end_s, 'sent': sent, 'readings': readings}
+  return {
+    'end': run.end_s,
+    'sent': sent,
+    'readings': readings,
+    'ways': room.ways(run),
+  }
 
 
 def _head(run: archive.Run) -> markup.Markup:
@@ -104,7 +116,19 @@ def _head(run: archive.Run) -> markup.Markup:
     tag('h1', verdict, ' ', words),
     tag('p', *chips, class_='chips'),
     tag('p', describe(run), class_='faint'),
+    _changes(run),
   )
+
+
+def _changes(run: archive.Run) -> markup.Markup | None:
+  """What is unlike the default: disturbances, looks, languages."""
+  told = _TOLD
+  if run.scenario['layout'] == 'arc':
+    told = (*told, 'half_span_deg')
+  found = changes.among(run.scenario, told)
+  if not found:
+    return None
+  return tag('p', tag('b', 'Changed: '), ', '.join(found), class_='changed')
 
 
 def describe(run: archive.Run) -> str:
@@ -165,7 +189,7 @@ def _film(run: archive.Run, films: Sequence[str]) -> markup.Markup:
     video or missing,
     choice,
     tag('p', tag('output', id='now'), class_='now'),
-    timelines.draw(run),
+    tag('div', timelines.draw(run), class_='scroll'),
     tag('p', hint, class_='faint screen'),
     _patterns(),
     id='film',
@@ -204,13 +228,25 @@ def _flights(run: archive.Run) -> markup.Markup:
   return tag(
     'section',
     tag('h2', 'Flights'),
+    tag('div', room.plan(run), room.front(run), class_='pair'),
     tag(
-      'div',
-      flights.plan(run),
-      tag('div', flights.displacements(run), flights.distances(run)),
-      class_='pair',
+      'p',
+      'Marked is where everyone is at the time of the cursor above, with the'
+      ' last 8 s of its way.',
+      class_='faint screen',
     ),
+    tag('div', flights.displacements(run), flights.distances(run)),
+    *_dance(run),
   )
+
+
+def _dance(run: archive.Run) -> list[markup.Markup]:
+  """Every gesture as it was flown."""
+  drawn = room.dance(run)
+  if drawn is None:
+    return []
+  title = 'What the performer flew, from the front; world x and height in m'
+  return [tag('h3', title), drawn]
 
 
 def _observer(
@@ -221,7 +257,7 @@ def _observer(
   events = timelines.motions(run.events[name])
   plots = tag('p', 'No track was kept.', class_='faint')
   if trace is not None and len(trace.times_s):
-    plots = signals.draw(trace, run.end_s, config)
+    plots = tag('div', signals.draw(trace, run.end_s, config), class_='scroll')
   return tag(
     'section',
     tag(

@@ -1,6 +1,7 @@
 """The page of a sweep: its envelope, its limits and all that failed."""
 
 from collections.abc import Sequence
+import itertools
 import pathlib
 
 from waggle_tasks.experiments import (
@@ -109,10 +110,15 @@ def _failures(failures: Sequence[envelope.Failure]) -> markup.Markup | None:
   if not failures:
     return None
   items = []
-  for each in failures[:_MOST_FAILURES]:
-    words = tag('b', f'{each.row["case"]}, {each.observer}')
-    items.append(tag('li', words, f': {each.reason}', tag('pre', repeat(each))))
-  more = len(failures) - len(items)
+  shown = failures[:_MOST_FAILURES]
+  for row, members in itertools.groupby(shown, lambda each: each.row):
+    reasons = (
+      tag('div', tag('b', each.observer), f': {each.reason}')
+      for each in members
+    )
+    name = tag('b', row['case'])
+    items.append(tag('li', name, *reasons, tag('pre', repeat(row))))
+  more = len(failures) - len(shown)
   return tag(
     'section',
     tag('h2', 'What failed'),
@@ -122,9 +128,8 @@ def _failures(failures: Sequence[envelope.Failure]) -> markup.Markup | None:
   )
 
 
-def repeat(failure: envelope.Failure) -> str:
-  """The shell line that flies a failure's case again, with its report."""
-  row = failure.row
+def repeat(row: envelope.Row) -> str:
+  """The shell line that flies a case again, with its report."""
   given = [f'--receiver={row["receiver"]}']
   given += scenario_fields.flags(row['scenario'])
   return provenance.command_line('broadcast', given)
@@ -148,7 +153,7 @@ def _table(panel: envelope.Panel) -> markup.Markup:
   )  # fmt: skip
   return tag(
     'section',
-    tag('h2', 'Every cell', panel.fixed and f': {heat.title(panel)}'),
+    tag('h2', ': '.join(filter(None, ('Every cell', heat.title(panel))))),
     markup.table(header, lines),
   )
 

@@ -3,18 +3,27 @@
 import pathlib
 import types
 
+import cv2
 import numpy as np
 
+from waggle_tasks import errors
 from waggle_tasks.experiments import reader
 from waggle_tasks.experiments.video import encoders, layout, moment, page
 from waggle_tasks.protocol.symbols import Symbol
 
 _FPS = 12.5
 _LEAST_PX, _MOST_PX = 480, 960  # Width of the picture.
+# What a full disk and the like make of writing.
+_ERRORS = (OSError, errors.WaggleError, cv2.error)
 
 
 class Film:
-  """Writes the video while a reader works; a context manager."""
+  """Writes the video while a reader works; a context manager.
+
+  Attributes:
+    problem: Why it could not be written, which must not end the reading; empty
+      while it can.
+  """
 
   def __init__(self, path: pathlib.Path, work: reader.Reader) -> None:
     """Checks the file's name; it is written with the first picture.
@@ -27,6 +36,12 @@ class Film:
       VideoError: if the name chooses no codec, or is taken.
     """
     encoders.check_name(path.name)
+    try:
+      str(path).encode()
+    except UnicodeEncodeError:
+      raise layout.VideoError(
+        f'`annotate` must be a name in UTF-8: got {str(path)!a}'
+      ) from None
     if path.exists() or not path.parent.is_dir():
       raise layout.VideoError(
         f'`annotate` must be a new file in a folder that exists: got {path}'
@@ -37,6 +52,7 @@ class Film:
     self._encoder: encoders.Encoder | None = None
     self._begin_s = 0.0
     self._pictures = 0
+    self.problem = ''
 
   def __enter__(self) -> 'Film':
     return self
@@ -47,15 +63,25 @@ class Film:
     error: BaseException | None,
     trace: types.TracebackType | None,
   ) -> None:
-    if error is None:
-      self._encoder.close()
-    else:
-      self._encoder = None  # Lets go of the file.
-      self._path.unlink(missing_ok=True)
+    if error is None and self._encoder is not None:
+      try:
+        self._encoder.close()
+      except _ERRORS as problem:
+        self._give_up(problem)
+    elif error is not None:
+      self._drop()
 
   def take(self, image: np.ndarray, time_s: float) -> None:
     """Shows what the reader made of an image, (H, W, 3) uint8 RGB."""
+    if self.problem:
+      return
     self._watch.note(())
+    try:
+      self._write(image, time_s)
+    except _ERRORS as problem:
+      self._give_up(problem)
+
+  def _write(self, image: np.ndarray, time_s: float) -> None:
     if self._encoder is None:
       self._begin(image, time_s)
     shown = None
@@ -63,7 +89,7 @@ class Film:
     while self._begin_s + self._pictures / _FPS <= time_s + 1e-6:
       if shown is None:
         sight = self._watch.sight(image)
-        now = moment.Moment(time_s, Symbol.NULL, (sight,), {})
+        now = moment.Moment(time_s, Symbol.NULL, (sight,), {}, {})
         shown = self._page.draw(now)
       self._encoder.write(shown)
       self._pictures += 1
@@ -75,3 +101,11 @@ class Film:
     self._page = page.Single(self._name, size=size)
     self._encoder = encoders.make(self._path, self._page.size, _FPS)
     self._begin_s = time_s
+
+  def _give_up(self, problem: Exception) -> None:
+    self.problem = f'{self._path} could not be written: {problem}'
+    self._drop()
+
+  def _drop(self) -> None:
+    self._encoder = None  # Lets go of the file.
+    self._path.unlink(missing_ok=True)

@@ -29,6 +29,11 @@ class Encoder(Protocol):
     ...
 
 
+def _plain(path: pathlib.Path) -> str:
+  """A name from the root: no colon in it is taken for a protocol."""
+  return str(path.absolute())
+
+
 class _Webm:
   """VP8, the one codec of OpenCV's wheel that browsers play."""
 
@@ -36,10 +41,11 @@ class _Webm:
     self, path: pathlib.Path, size: tuple[int, int], fps: float
   ) -> None:
     self._path = path
+    self._pictures = 0
     fourcc = cv2.VideoWriter.fourcc(*'VP80')
     with quiet.quiet():  # OpenCV grumbles at a tag that it then replaces.
       self._writer = cv2.VideoWriter(
-        str(path), cv2.CAP_FFMPEG, fourcc, fps, size
+        _plain(path), cv2.CAP_FFMPEG, fourcc, fps, size
       )
     if not self._writer.isOpened():
       raise layout.VideoError(
@@ -49,13 +55,15 @@ class _Webm:
 
   def write(self, picture: np.ndarray) -> None:
     self._writer.write(cv2.cvtColor(picture, cv2.COLOR_RGB2BGR))
+    self._pictures += 1
 
   def close(self) -> None:
     self._writer.release()
-    # OpenCV tells nobody when the disk is full.
+    # OpenCV tells nobody when the disk is full: the length is written last.
     with quiet.quiet():
-      check = cv2.VideoCapture(str(self._path), cv2.CAP_FFMPEG)
-    complete = check.grab()
+      check = cv2.VideoCapture(_plain(self._path), cv2.CAP_FFMPEG)
+    length = check.get(cv2.CAP_PROP_FRAME_COUNT)
+    complete = check.grab() and length >= self._pictures - 1
     check.release()
     if not complete:
       raise layout.VideoError(f'{self._path.name} could not be written')
@@ -77,7 +85,7 @@ class _Mp4:
     self._av = av
     rate = fractions.Fraction(fps).limit_denominator(1000)
     try:
-      self._container = av.open(str(path), 'w')
+      self._container = av.open(_plain(path), 'w')
       self._stream = self._container.add_stream('libx264', rate=rate)
     except (av.FFmpegError, ValueError) as error:
       raise layout.VideoError(

@@ -8,11 +8,13 @@ import dm_env
 
 from waggle_tasks import scenario
 from waggle_tasks.agents import observer_agent
-from waggle_tasks.experiments import story
+from waggle_tasks.experiments import changes, story
 from waggle_tasks.experiments.video import encoders, layout, lens, page
 from waggle_tasks.protocol import checks, timing
 
 COMPOSITE = 'composite'
+# Of a scenario, what its title or the pictures themselves say.
+_TOLD = ('control', 'payload', 'layout', 'distance_m', 'observers')
 FPS = 5.0  # Every fifth frame: cheap beside the run.
 
 
@@ -115,7 +117,9 @@ def composite(
 ) -> page.Composite:
   """A page of a scenario's composite for some of its observers."""
   sent = story.sent_in(scene)
-  return page.Composite(names, title(scene), sent, scene.episode_s, scale)
+  return page.Composite(
+    names, title(scene), sent, scene.episode_s, scale, changes.of(scene, _TOLD)
+  )
 
 
 def page_paths(path: pathlib.Path, count: int) -> list[pathlib.Path]:

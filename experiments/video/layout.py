@@ -19,6 +19,7 @@ VIEW_PX = (640, 480)  # Of an observer's image, and of a single view.
 _WIDTH = 1024
 _GAP = 6
 _HEADER = 38
+_NOTE = 18  # A line of notes below it.
 _TITLE = 23  # Above a picture.
 _FOOT = 25  # Below an observer's.
 _ROW = 20  # Of the strip of events.
@@ -94,6 +95,7 @@ class Layout(Design):
     width: Of the whole picture, even, as encoders ask for.
     height: The same.
     header: Time and what is being sent.
+    notes: What is unlike the default scenario.
     observers: The picture of each observer, without its title and foot.
     shared: The shared views, without their titles, by name.
     card: The latest events in words.
@@ -103,6 +105,7 @@ class Layout(Design):
   width: int
   height: int
   header: Rect
+  notes: Rect
   observers: tuple[Rect, ...]
   shared: dict[str, Rect]
   card: Rect
@@ -125,7 +128,7 @@ def single(
   return design, Rect(0, design.px(_TITLE), width, height)
 
 
-def plan(observers: int, scale: float = 1.0) -> Layout:
+def plan(observers: int, scale: float = 1.0, notes: int = 0) -> Layout:
   """Lays out a page of the composite video.
 
   Every page is 1024 wide at scale 1 and as high as it needs to be: observers
@@ -135,12 +138,13 @@ def plan(observers: int, scale: float = 1.0) -> Layout:
   Args:
     observers: How many are on it, 1 to 5.
     scale: Size, 0.25 to 2.
+    notes: How many lines there are below the header.
 
   Raises:
     VideoError: if a number is out of its range.
   """
   checks.integer('observers', observers, 1, PER_PAGE, VideoError)
-  top = _GAP + _HEADER
+  top = _GAP + _HEADER + notes * _NOTE
   cell = (_WIDTH - 5 * _GAP) / 4
   high = cell * 3 / 4
   if observers == 1:
@@ -172,6 +176,7 @@ def plan(observers: int, scale: float = 1.0) -> Layout:
     2 * round(_WIDTH * scale / 2),
     2 * round((top + strip + _GAP) * scale / 2),
     rect(_GAP, _GAP / 2, _WIDTH - 2 * _GAP, _HEADER),
+    rect(_GAP, _GAP / 2 + _HEADER, _WIDTH - 2 * _GAP, notes * _NOTE),
     tuple(rect(*eye, eye[-1] * 3 / 4) for eye in eyes),
     {
       name: rect(x, y + _TITLE, cell, high)

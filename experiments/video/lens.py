@@ -1,9 +1,11 @@
 """Looks at a running episode and tells what a picture of it shows."""
 
 from collections.abc import Sequence
+import math
 
-from dm_control import composer
+from dm_control import composer, mjcf
 import dm_env
+import mujoco
 import numpy as np
 
 from waggle_tasks import scenario
@@ -78,7 +80,26 @@ class Lens:
     }
     sights = tuple(self._watches[name].sight(images[name]) for name in names)
     symbol = story.symbol_at(self._sent, time_s)
-    return moment.Moment(time_s, symbol, sights, shared)
+    places = {name: self._places(self._shared[name]) for name in shared}
+    return moment.Moment(time_s, symbol, sights, shared, places)
+
+  def _places(self, camera: str) -> dict[str, tuple[float, float]]:
+    """Columns and rows of the vehicles that stand before a camera."""
+    physics, out = self._environment.physics, {}
+    width, height = layout.VIEW_PX
+    camera_m = physics.named.data.cam_xpos[camera]
+    axes = physics.named.data.cam_xmat[camera].reshape(3, 3)
+    number = physics.model.name2id(camera, 'camera')
+    fovy, flat = physics.model.cam_fovy[number], _is_flat(physics, number)
+    for name, place_m in self._environment.task.positions_m(physics).items():
+      x, y, z = (place_m - camera_m) @ axes
+      if z >= 0.0:
+        continue
+      # Metres that the picture is high, where the vehicle is.
+      high_m = fovy if flat else -2 * z * math.tan(math.radians(fovy) / 2)
+      zoom = height / high_m
+      out[name] = float(width / 2 + zoom * x), float(height / 2 - zoom * y)
+    return out
 
   def _look(self, camera: str) -> np.ndarray:
     physics = self._environment.physics
@@ -86,3 +107,9 @@ class Lens:
       width, height = layout.VIEW_PX
       return physics.render(height, width, camera)
     return self._renderer.image(physics.model.name2id(camera, 'camera')).copy()
+
+
+def _is_flat(physics: mjcf.Physics, camera: int) -> bool:
+  """Whether a camera has no perspective."""
+  kind = physics.model.cam_projection[camera]
+  return kind == mujoco.mjtProjection.mjPROJ_ORTHOGRAPHIC

@@ -42,12 +42,14 @@ class Moment:
     sent: What the performer flies.
     sights: Every observer on the page.
     shared: Images of the shared views by name, (H, W, 3) uint8 RGB each.
+    places: In each of them, columns and rows of the vehicles by name.
   """
 
   time_s: float
   sent: Symbol
   sights: tuple[Sight, ...]
   shared: dict[str, np.ndarray]
+  places: dict[str, dict[str, tuple[float, float]]]
 
 
 class Watch:

@@ -34,6 +34,7 @@ class Composite:
     sent: Sequence[story.Sent],
     end_s: float,
     scale: float = 1.0,
+    changed: Sequence[str] = (),
   ) -> None:
     """Plans the page.
 
@@ -43,8 +44,10 @@ class Composite:
       sent: What the performer flies.
       end_s: How long it lasts at most.
       scale: Size; at 1 it is 1024 pixels wide.
+      changed: What of the scenario is unlike the default.
     """
-    self._plan = layout.plan(len(names), scale)
+    self._notes = panel.notes(changed)
+    self._plan = layout.plan(len(names), scale, len(self._notes))
     self._title = title
     self._strip = panel.Strip(self._plan, names, sent, end_s)
     self._canvas = np.empty((self._plan.height, self._plan.width, 3), np.uint8)
@@ -59,10 +62,13 @@ class Composite:
     canvas, plan = self._canvas, self._plan
     pen.fill(canvas, layout.Rect(0, 0, *self.size), GROUND)
     panel.header(canvas, plan, self._title, now)
+    panel.write_notes(canvas, plan, self._notes)
     for picture, sight in zip(plan.observers, now.sights, strict=True):
       tiles.observer(canvas, plan, picture, sight)
     for name, picture in plan.shared.items():
-      tiles.shared(canvas, plan, picture, name, now.shared[name])
+      tiles.shared(
+        canvas, plan, picture, name, now.shared[name], now.places[name]
+      )
     panel.card(canvas, plan, now.sights)
     self._strip.draw(canvas, now)
     return canvas
@@ -110,7 +116,10 @@ class Single:
       tiles.observer(self._canvas, self._design, self._picture, sight)
     else:
       image = now.shared[self._view]
-      tiles.shared(self._canvas, self._design, self._picture, self._view, image)
+      tiles.shared(
+        self._canvas, self._design, self._picture, self._view, image,
+        now.places[self._view],
+      )  # fmt: skip
     self._clock(now)
     return self._canvas
 

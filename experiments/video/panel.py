@@ -40,6 +40,30 @@ def header(
   pen.text(canvas, pen.fitted(title, size, room), rect.left, middle, size)
 
 
+def notes(changed: Sequence[str]) -> list[str]:
+  """What is unlike the default scenario, in lines that fit a page."""
+  room, lines = layout.plan(1).notes.width, []
+  for each in changed:
+    longer = f'{lines[-1]}, {each}' if lines else each
+    if lines and pen.width_px(longer, _SIZE) <= 0.95 * room:
+      lines[-1] = longer
+    else:
+      lines.append(each)
+  return lines
+
+
+def write_notes(
+  canvas: np.ndarray,  # (H, W, 3) uint8
+  plan: layout.Layout,
+  lines: Sequence[str],
+) -> None:
+  """Writes the lines of `notes` below the header."""
+  rect = plan.notes
+  for number, line in enumerate(lines):
+    middle = rect.top + round((number + 0.5) * rect.height / len(lines))
+    pen.text(canvas, line, rect.left, middle, plan.px(_SIZE), palette.YELLOW)
+
+
 def card(
   canvas: np.ndarray,  # (H, W, 3) uint8
   plan: layout.Layout,
@@ -118,6 +142,7 @@ class Strip:
     self._left = plan.px(_LABELS)
     self._width = plan.strip.width - self._left - plan.px(12)
     self._drawn = dict.fromkeys(names, 0)
+    self._ends = dict.fromkeys(names, self._left)  # Of the last mark of each.
     size = plan.strip.height, plan.strip.width, 3
     self._canvas = np.empty(size, np.uint8)
     self._canvas[:] = palette.rgb(tiles.BAR)
@@ -174,7 +199,9 @@ class Strip:
     """Adds new events, and draws the strip with a line for now."""
     for row, sight in enumerate(now.sights, start=1):
       for event in sight.events[self._drawn[sight.name] :]:
-        self._mark(event, self._middle(row))
+        self._ends[sight.name] = self._mark(
+          event, self._middle(row), self._ends[sight.name]
+        )
       self._drawn[sight.name] = len(sight.events)
     rect, plan = self._plan.strip, self._plan
     part = canvas[rect.slices]
@@ -183,13 +210,26 @@ class Strip:
     bottom = plan.px(6) + (len(self._drawn) + 1) * plan.row
     part[plan.px(2) : bottom, column : column + plan.px(2)] = 255
 
-  def _mark(self, event: rollout_lib.Event, middle: int) -> None:
-    """Draws an event: nulls are small and hollow, the rest are named."""
-    plan, left = self._plan, self._column(event.time_s)
+  def _mark(self, event: rollout_lib.Event, middle: int, free: int) -> int:
+    """Draws an event: nulls are small and hollow, the rest are named.
+
+    A mark ends at its time. One that would cover the mark before it moves to
+    the right, as far as its time allows, and has no name beyond that.
+
+    Args:
+      event: The event.
+      middle: The row.
+      free: The column where the mark before it ends.
+
+    Returns:
+      The column where this one ends.
+    """
+    plan, column = self._plan, self._column(event.time_s)
     size = plan.px(12)
     if getattr(event, 'symbol', None) is Symbol.NULL:
       side = plan.px(9)
-      box = layout.Rect(left - side, middle - side // 2, side, side)
+      left = min(max(column - side, free), column)
+      box = layout.Rect(left, middle - side // 2, side, side)
       pen.fill(self._canvas, box, palette.GREY)
       inside = layout.Rect(
         box.left + plan.px(2),
@@ -198,14 +238,21 @@ class Strip:
         side - 2 * plan.px(2),
       )
       pen.fill(self._canvas, inside, tiles.BAR)
-      return
+      return box.right
     if isinstance(event, receiver.Event):
       label = '?' if event.symbol is Symbol.UNKNOWN else str(event.symbol)
       colour = palette.SYMBOLS[event.symbol]
     else:
       label, colour = _DEEDS.get(getattr(event, 'deed', None), '!'), _DEED
-    left -= pen.chip_width(label, size)
-    pen.chip(self._canvas, label, left, middle, size, colour)
+    width = pen.chip_width(label, size)
+    left = max(column - width, free)
+    if left <= column and left + width <= self._plan.strip.width:
+      return pen.chip(self._canvas, label, left, middle, size, colour)
+    bar = layout.Rect(
+      max(column, free), middle - plan.px(8), plan.px(3), plan.px(16)
+    )
+    pen.fill(self._canvas, bar, colour)
+    return bar.right
 
 
 _DEED = palette.YELLOW

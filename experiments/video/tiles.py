@@ -1,5 +1,7 @@
 """Pictures with their titles: an observer's sight, and a shared view."""
 
+from collections.abc import Mapping
+
 import cv2
 import numpy as np
 
@@ -11,6 +13,7 @@ _GOOD, _LOST, _TRAIL = palette.GREEN, palette.VERMILLION, palette.YELLOW
 _BOX_PX = 60.0  # Around a target, in the observer's own pixels.
 _REST_PX = 2.0  # A shorter trail would only hide the target.
 _SIZE = 14
+_RING = 9  # Around a vehicle in a shared view.
 _NAMES = {
   'performer': 'performer view',
   'top': 'top view',
@@ -46,10 +49,37 @@ def shared(
   picture: layout.Rect,
   name: str,
   image: np.ndarray,  # (H, W, 3) uint8
+  places: Mapping[str, tuple[float, float]],
 ) -> None:
-  """Draws a shared view."""
+  """Draws a shared view, and where in it every vehicle is."""
   place(canvas, picture, image)
+  zoom = picture.width / image.shape[1]
+  for vehicle, (column, row) in places.items():
+    inside = 0 <= column < image.shape[1] and 0 <= row < image.shape[0]
+    if inside:
+      _vehicle(canvas[picture.slices], plan, vehicle, column * zoom, row * zoom)
   _bar(canvas, plan, plan.title(picture), _NAMES[name])
+
+
+def _vehicle(
+  picture: np.ndarray, plan: layout.Design, name: str, x: float, y: float
+) -> None:
+  """Draws a ring around a vehicle, which is small, and its number."""
+  turns = np.linspace(0.0, 2 * np.pi, 25)
+  radius, size = plan.px(_RING), plan.px(_SIZE - 2)
+  ring = np.column_stack(
+    [x + radius * np.cos(turns), y + radius * np.sin(turns)]
+  )
+  number = name.rpartition('_')[2] if name.startswith('observer') else ''
+  colour = palette.WHITE if number else palette.ORANGE
+  pen.outline(picture, ring, colour, plan.px(1))
+  if number:
+    width, gap = pen.chip_width(number, size), plan.px(2)
+    left = min(max(round(x) - width // 2, 0), picture.shape[1] - width)
+    below = round(y) + radius + gap + size
+    above = round(y) - radius - gap - size
+    middle = below if below + size < picture.shape[0] else above
+    pen.chip(picture, number, left, middle, size, palette.WHITE)
 
 
 def _middle(rect: layout.Rect) -> int:

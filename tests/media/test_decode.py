@@ -29,7 +29,9 @@ def decoded(
   path: pathlib.Path, part: Part = Part(), zoom: float = 1.0
 ) -> tuple[list[str], reader.Reader]:
   """The symbols of a recording, and the reader that read them."""
-  work = reader.Reader('klt', gestures.v_codebook(0.12, 0.25, 2.0), zoom)
+  seen = camera.Camera(focal_px=zoom * camera.Camera.focal_px)
+  short = gestures.v_codebook(0.12, 0.25, 2.0)
+  work = reader.Reader('klt', agreement.Agreement(short, camera=seen))
   with recordings.Recording(path) as recording:
     for image, time_s in recording.frames(part):
       work.take(image, time_s)

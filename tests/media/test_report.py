@@ -1,6 +1,7 @@
 """The page of a run, of a suite, and the command that makes them again."""
 
 from collections.abc import Callable
+import html
 import html.parser
 import itertools
 import json
@@ -12,7 +13,8 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 
-from waggle_tasks.experiments import archive, traces
+from waggle_tasks import scenario
+from waggle_tasks.experiments import archive, records, traces
 from waggle_tasks.experiments.pages import (
   document,
   markup,
@@ -109,8 +111,8 @@ def test_every_drawing_is_well_formed_and_says_what_it_shows(
 ) -> None:
   drawings = re.findall(r'<svg.*?</svg>', page, re.DOTALL)
   # Timelines, four panels for each of two observers, eight motions, the room
-  # from above, and the stripes.
-  assert len(drawings) == 1 + 2 * 4 + 8 + 1 + 1
+  # from above and from the front, eight gestures as flown, and the stripes.
+  assert len(drawings) == 1 + 2 * 4 + 8 + 2 + 8 + 1
   for drawing in drawings:
     root = ElementTree.fromstring(drawing)
     assert root.get('aria-label') or root.find('defs') is not None
@@ -125,6 +127,40 @@ def test_the_verdict_comes_first_with_a_chip_for_each_observer(
   assert '\u2713 observer_2 no message' in words
   assert 'What failed' not in words
   assert 'waited, as it should' in words
+
+
+def test_the_head_tells_all_that_is_unlike_the_default(words: str) -> None:
+  head = words.split('Timeline')[0]
+  assert 'black_input; payload 000010' in head
+  assert 'half-span 10\u00b0' in head
+  changed = head.split('Changed: ')[1]
+  assert changed.strip() == (
+    'half_width_m=0.12, start_height_m=0.25, gesture_s=2,'
+    ' initial_hover_s=3.2, settle_s=0.6, lead_in_s=1.8'
+  )
+
+
+def test_a_run_of_the_defaults_changes_nothing(copied: pathlib.Path) -> None:
+  config = json.loads((copied / 'config.json').read_text())
+  config['scenario'] = records.to_json(scenario.Scenario(observers=2))
+  (copied / 'config.json').write_text(json.dumps(config))
+  page = run_page.write(copied).read_text(encoding='utf-8')
+  assert 'Changed' not in str(Text(page))
+
+
+def test_the_dance_is_seen_from_the_front(page: str, recorded: object) -> None:
+  way_m = recorded.rollout.positions_m['performer']
+  (drawing,) = re.findall(
+    r'<svg(?:(?!</svg>).)*the room from the front.*?</svg>', page, re.DOTALL
+  )
+  maps = html.unescape(re.search(r'data-maps="([^"]*)"', drawing)[1])
+  (x, *_), (z, low_m, bottom, scale) = json.loads(maps)
+  assert (x, z) == (0, 2)
+  line = re.search(r'<polyline points="([^"]+)"', drawing)[1]
+  rows = [float(pair.split(',')[1]) for pair in line.split()]
+  heights_m = [low_m + (row - bottom) / scale for row in rows]
+  assert min(heights_m) == pytest.approx(way_m[:, 2].min(), abs=0.002)
+  assert max(heights_m) == pytest.approx(way_m[:, 2].max(), abs=0.002)
 
 
 def test_a_run_that_failed_shows_its_failures_before_everything_else(

@@ -31,13 +31,17 @@ def test_it_loads_its_video_and_nothing_else(
   browser: object, recorded: object
 ) -> None:
   folder = recorded.folder.resolve().as_uri()
-  names = {url.removeprefix(f'{folder}/') for url in browser.requests}
+  names = {
+    url.removeprefix(f'{folder}/')
+    for url in browser.requests
+    if not url.startswith('data:')  # The browser's own buttons.
+  }
   assert names == {document.NAME, 'composite.webm'}
   end_s = recorded.rollout.times_s[-1]
   assert browser.eval('video.duration') == pytest.approx(end_s, abs=0.3)
 
 
-@pytest.mark.parametrize('width', [1440, 1280, 1024, 820])
+@pytest.mark.parametrize('width', [1440, 1280, 1024, 820, 390])
 def test_no_words_overlap_and_none_are_clipped(
   chromium: types.ModuleType, browser: object, width: int
 ) -> None:
@@ -85,6 +89,37 @@ def test_arrow_keys_step(browser: object) -> None:
     "plots[0].dispatchEvent(new KeyboardEvent('keydown', {key: 'ArrowRight'}))"
   )
   assert browser.eval('now') == pytest.approx(11)
+
+
+def test_the_room_marks_where_everyone_is(
+  browser: object, recorded: object
+) -> None:
+  way_m = recorded.rollout.positions_m['performer']
+  for time_s in (0.0, 6.2, 40.0):
+    browser.eval(f'seek({time_s})')
+    maps, moved = browser.eval(
+      '((plan) => [JSON.parse(plan.dataset.maps), plan.querySelector('
+      "'g[data-name=performer]').getAttribute('transform')])(plans[1])"
+    )
+    x, y = map(float, moved.removeprefix('translate(')[:-1].split())
+    (_, low_x, left, scale_x), (_, low_z, bottom, scale_z) = maps
+    place_m = way_m[round(time_s / 0.04)]
+    assert low_x + (x - left) / scale_x == pytest.approx(place_m[0], abs=0.03)
+    assert low_z + (y - bottom) / scale_z == pytest.approx(place_m[2], abs=0.03)
+
+
+def test_a_drawing_of_the_room_is_looked_at_from_nearer(
+  browser: object,
+) -> None:
+  whole = browser.eval('plans[1].viewBox.baseVal.width')
+  press = 'plans[1].parentElement.querySelector(\'[data-zoom="{}"]\').click()'
+  browser.eval(press.format('2'))
+  browser.eval(press.format('2'))
+  assert browser.eval('plans[1].viewBox.baseVal.width') == whole / 4
+  said = "plans[1].parentElement.querySelector('output').textContent"
+  assert browser.eval(said).endswith(' m wide')
+  browser.eval(press.format('0'))
+  assert browser.eval('plans[1].viewBox.baseVal.width') == whole
 
 
 def test_play_and_speed_are_buttons(browser: object) -> None:

@@ -109,8 +109,8 @@ def test_changed_numbers_are_those_of_the_page(
   assert 'under 30.0 px/s (0.15 widths/s, at least 30 px/s)' in drawn
   assert 'the track 0.3' in drawn
   events = [e for e in run.rollout.events['observer_1'] if e.time_s < 10][1:2]
-  book = scenario.Scenario().codebook
-  scores = gesture_plots.draw(events, trace, book, config)
+  agreed = scenario.Scenario().agreement
+  scores = gesture_plots.draw(events, trace, agreed, config)
   least_px = 0.5 * trace.motions[0].width_px
   assert f'{least_px:.3g} (0.5 widths)' in scores
 

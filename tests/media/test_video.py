@@ -7,14 +7,25 @@ import subprocess
 import sys
 
 import cv2
+from dm_control.mujoco import engine
 import numpy as np
 import pytest
 
 from waggle_tasks import registry, scenario
+from waggle_tasks.agents import observer_agent, receiver
 from waggle_tasks.entities import renderer
 from waggle_tasks.experiments import palette, records, story
 from waggle_tasks.experiments import rollout as rollout_lib
-from waggle_tasks.experiments.video import encoders, film, layout, lens, page
+from waggle_tasks.experiments.video import (
+  encoders,
+  film,
+  layout,
+  lens,
+  moment,
+  page,
+  panel,
+)
+from waggle_tasks.protocol import frame, payload
 from waggle_tasks.protocol.symbols import Symbol
 
 
@@ -87,13 +98,13 @@ def test_the_video_lasts_as_long_as_the_run_at_its_rate(
     [time_s for time_s, _ in pictures], np.arange(len(pictures)) / 5, atol=1e-3
   )
   assert pictures[-1][0] == pytest.approx(end_s, abs=0.2)
-  plan = layout.plan(2, 0.5)
+  plan = layout.plan(2, 0.5, 1)
   assert pictures[0][1].shape == (plan.height, plan.width, 3)
 
 
 def test_an_observers_picture_is_what_it_sees(recorded: object) -> None:
   pictures = frames(recorded.folder / 'composite.webm')
-  seeing, blind = layout.plan(2, 0.5).observers
+  seeing, blind = layout.plan(2, 0.5, 1).observers
   for _, picture in pictures[::50]:
     assert picture[blind.slices].mean() < 20  # Black, but for its marks.
     assert picture[seeing.slices].mean() > 80
@@ -107,7 +118,7 @@ def colour_share(picture: np.ndarray, colour: str) -> float:
 
 def test_symbols_and_track_appear_as_they_are_read(recorded: object) -> None:
   pictures = frames(recorded.folder / 'composite.webm')
-  plan = layout.plan(2, 0.5)
+  plan = layout.plan(2, 0.5, 1)
   eye = plan.observers[0]
   start = next(
     e for e in recorded.rollout.events['observer_1']
@@ -305,3 +316,88 @@ def test_the_terminal_stays_clean(
   encoder.write(np.zeros((64, 64, 3), np.uint8))
   encoder.close()
   assert capfd.readouterr() == ('', '')
+
+
+def strip_of(*events: object) -> np.ndarray:
+  """The strip of events at the end of a broadcast, (H, W, 3)."""
+  plan = layout.plan(1)
+  strip = panel.Strip(plan, ['observer_1'], (), 104.6)
+  sight = moment.Sight(
+    'observer_1', np.zeros((2, 2, 3), np.uint8), None, np.empty((0, 2)),
+    story.Reading(), events,
+  )  # fmt: skip
+  canvas = np.zeros((plan.height, plan.width, 3), np.uint8)
+  strip.draw(canvas, moment.Moment(0.0, Symbol.NULL, (sight,), {}, {}))
+  return canvas[plan.strip.slices]
+
+
+def null(time_s: float) -> receiver.Event:
+  return receiver.Event(time_s, Symbol.NULL, frame.State.START)
+
+
+def deed(name: str, time_s: float) -> observer_agent.Navigation:
+  bits = payload.Payload.from_bits('000010')
+  return observer_agent.Navigation(
+    time_s, observer_agent.Deed(name), (0.0, 0.0, 1.3), bits, 9, ''
+  )
+
+
+# The final null, the start and the arrival of a broadcast; and a flight that
+# takes so little time that its end has no room for a name.
+@pytest.mark.parametrize('arrival_s', [98.76, 96.5, 95.7])
+def test_no_mark_of_the_strip_covers_the_one_before_it(
+  arrival_s: float,
+) -> None:
+  events = [
+    null(95.6),
+    deed('navigation start', 95.6),
+    deed('arrival', arrival_s),
+  ]
+  pictures = [strip_of(*events[:count]) for count in range(4)]
+  changed = [
+    np.flatnonzero((a != b).any(axis=(0, 2)))
+    for a, b in itertools.pairwise(pictures)
+  ]
+  for before, after in itertools.pairwise(changed):
+    assert len(before)
+    assert len(after)
+    assert before.max() < after.min()
+
+
+@pytest.mark.parametrize('view', ['overview', 'performer'])
+def test_rings_are_where_a_camera_sees_the_vehicles(view: str) -> None:
+  scene = scenario.Scenario(control='no_send', duration_s=0.08)
+  seen = lens.Lens(scene)
+
+  def look(environment: object, timestep: object, team: object) -> None:
+    seen.note(environment, timestep, team)
+    now = seen.moment(('observer_1',), seen.shared())
+    physics, (width, height) = environment.physics, layout.VIEW_PX
+    camera = engine.Camera(physics, height, width, layout.SHARED[view])
+    spots = environment.task.positions_m(physics)
+    wanted = {}
+    for name, place_m in spots.items():
+      x, y, z = camera.matrix @ [*place_m, 1.0]
+      wanted[name] = pytest.approx((x / z, y / z), abs=1.0)
+    assert now.places[view] == wanted
+
+  rollout_lib.run(scene, 'klt', [look])
+
+
+def test_rings_seen_from_above_stand_as_the_vehicles_do() -> None:
+  scene = scenario.Scenario(control='no_send', duration_s=0.08)
+  seen = lens.Lens(scene)
+
+  def look(environment: object, timestep: object, team: object) -> None:
+    seen.note(environment, timestep, team)
+    places = seen.moment((), seen.shared()).places['top']
+    spots = environment.task.positions_m(environment.physics)
+    ground = np.array([spots[name][:2] for name in places])
+    pixels = np.array([*places.values()]) * (1.0, -1.0)
+    (across, up) = (np.ptp(pixels, axis=0) / np.ptp(ground, axis=0)).tolist()
+    assert across == pytest.approx(up)
+    assert len(places) == 4
+    zoomed = (ground - ground[0]) * across
+    np.testing.assert_allclose(zoomed, pixels - pixels[0], atol=1e-6)
+
+  rollout_lib.run(scene, 'klt', [look])

@@ -36,6 +36,14 @@ def die(report: Report, tries: pathlib.Path, deaths: int) -> str:
   return 'alive'
 
 
+def leave(report: Report, torn: bool) -> None:
+  """Ends its own process, if `torn` in the middle of a message."""
+  (pipe,) = (cell.cell_contents for cell in report.__closure__)
+  if torn:
+    os.write(pipe.fileno(), b'\x00\x00\x00\x64half')  # 100 bytes, it says.
+  os._exit(1)
+
+
 def hang(report: Report, tries: pathlib.Path, hangs: int) -> str:
   """Says nothing for a minute, the first times."""
   del report

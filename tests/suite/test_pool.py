@@ -120,10 +120,22 @@ def test_a_job_that_kills_every_worker_is_given_up_by_name(
   todo = [pool.Job('deadly', jobs.die, (tmp_path / 'tries', 9))]
   with pytest.raises(
     pool.WorkerError,
-    match=r'^deadly failed 2 times, at last: its process died$',
+    match=r'^deadly failed 2 times, at last: its process was ended by SIGKILL$',
   ):
     list(pool.run(todo, 1))
   assert len(lines(tmp_path / 'tries')) == 2
+  assert not multiprocessing.active_children()
+
+
+@pytest.mark.parametrize('torn', [False, True])
+def test_a_worker_that_leaves_even_within_a_message_is_told_by_name(
+  torn: bool, jobs: types.ModuleType
+) -> None:
+  todo = [pool.Job('gone', jobs.leave, (torn,))]
+  with pytest.raises(
+    pool.WorkerError, match=r'^gone failed 2 times, at last: its process died$'
+  ):
+    list(pool.run(todo, 1))
   assert not multiprocessing.active_children()
 
 

@@ -60,7 +60,8 @@ def test_a_suite_of_ones_own_is_a_json_file(
     {'name': 'still', 'task': 'no_send', 'duration_s': 0.04, 'group': 'quiet'},
     {'name': 'cut', 'observers': 1, 'duration_s': 0.04, 'label': 'Cut short'},
   ]
-  (tmp_path / 'mine.json').write_text(json.dumps(rows), encoding='utf-8')
+  # With the mark that editors on Windows put in front.
+  (tmp_path / 'mine.json').write_text(json.dumps(rows), encoding='utf-8-sig')
   done = suite('--suite=mine.json', '--receiver=klt:hold_s=2.5')
   assert done.returncode == 1, done.stderr  # The second reads nothing.
   assert 'quiet: configuration' in done.stdout

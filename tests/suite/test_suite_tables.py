@@ -58,13 +58,45 @@ def test_the_totals_are_the_papers_when_the_rows_are(paper: list[Row]) -> None:
     ' 96.1% (bootstrap by broadcast)',
     'broadcasts passed: 13/17 (76.47%), paper 13/17; 95 % interval 50.1% to'
     ' 93.2% (Clopper-Pearson)',
-    'messages correct: 14/14 (100.00%), paper 14/14; 95 % interval 100.0% to'
-    ' 100.0% (bootstrap by broadcast)',
+    'messages correct: 14/14 (100.00%), paper 14/14; 95 % interval 29.2% to'
+    ' 100.0% (Clopper-Pearson, by broadcast)',
     'broadcasts passed: 3/3 (100.00%), paper 3/3; 95 % interval 29.2% to'
     ' 100.0% (Clopper-Pearson)',
     'broadcasts passed: 3/3 (100.00%), paper 3/3; 95 % interval 29.2% to'
     ' 100.0% (Clopper-Pearson)',
   ]
+
+
+# Broadcasts that are all alike have nothing to draw from.
+@pytest.mark.parametrize(
+  ('correct', 'said'),
+  [
+    (
+      (4, 5, 5),
+      '95 % interval 29.2% to 100.0% (Clopper-Pearson, by broadcast)',
+    ),
+    ((0, 0, 0), '95 % interval 0.0% to 70.8% (Clopper-Pearson, by broadcast)'),
+    ((4, 5, 4), '95 % interval 80.0% to 100.0% (bootstrap by broadcast)'),
+  ],
+)
+def test_an_interval_of_messages_is_never_without_width(
+  paper: list[Row], correct: tuple[int, ...], said: str
+) -> None:
+  rows = [row for row in paper if row['group'] == 'supplemental']
+  assert [row['observers'] for row in rows] == [4, 5, 5]
+  for row, count in zip(rows, correct, strict=True):
+    row['correct'] = count
+  line = suite_tables.totals(rows)[0]
+  assert line.endswith(f'; {said}')
+
+
+def test_broadcasts_with_one_share_have_no_interval_and_say_why(
+  paper: list[Row],
+) -> None:
+  row = next(row for row in paper if row['case'] == 'span-45')
+  line = suite_tables.totals([row])[0]
+  assert line.startswith('messages correct: 1/3 (33.33%)')
+  assert line.endswith('; no interval: every broadcast has the same share')
 
 
 def test_groups_have_tables_of_their_own_in_order(paper: list[Row]) -> None:

@@ -1,20 +1,38 @@
 """Sweeps on a Dask cluster: a real scheduler and two real workers."""
 
 from collections.abc import Callable, Iterator
+from concurrent import futures
+import contextlib
 import importlib.util
 import json
 import pathlib
+import re
+import signal
+import socket
 import subprocess
 import sys
+import threading
+import types
+from unittest import mock
 
 import pytest
 
-from waggle_tasks.experiments import cluster, pool, provenance
+from waggle_tasks.experiments import cluster, dask_probe, pool, provenance
+
+
+def _ipv6() -> bool:
+  with contextlib.suppress(OSError):
+    socket.create_server(('::1', 0), family=socket.AF_INET6).close()
+    return True
+  return False
+
 
 needs_dask = pytest.mark.skipif(
   importlib.util.find_spec('distributed') is None,
   reason="needs the extra [cluster]: pip install 'waggle-tasks[cluster]'",
 )
+IPV6 = _ipv6()
+needs_ipv6 = pytest.mark.skipif(not IPV6, reason='needs IPv6')
 # Dask warns of much; a process of its own keeps its threads and logs apart.
 FLY = """
 import functools, pathlib, sys
@@ -67,6 +85,19 @@ def scheduler(dask: Callable[..., object]) -> pathlib.Path:
   return path
 
 
+def listening(path: pathlib.Path, wait_until: Callable[..., None]) -> str:
+  """The address in a scheduler's file, which is empty for a moment."""
+  found = []
+
+  def read() -> list[str]:
+    with contextlib.suppress(OSError, ValueError):
+      found.append(json.loads(path.read_text())['address'])
+    return found
+
+  wait_until(read)
+  return found[0]
+
+
 @needs_dask
 def test_a_cluster_gives_the_same_bytes_as_one_worker(
   scheduler: pathlib.Path,
@@ -74,8 +105,7 @@ def test_a_cluster_gives_the_same_bytes_as_one_worker(
   flown: object,
   wait_until: Callable[..., None],
 ) -> None:
-  wait_until(scheduler.exists)
-  address = json.loads(scheduler.read_text())['address']
+  address = listening(scheduler, wait_until)
   done = subprocess.run(
     [sys.executable, '-c', FLY, str(sweep.folder), address, *sweep.grid],
     capture_output=True,
@@ -93,6 +123,9 @@ def test_a_cluster_gives_the_same_bytes_as_one_worker(
     ('tcp://127.0.0.1:1', 'Connection refused'),
     ('127.0.0.1:8786', 'not tcp://HOST:PORT'),
     ('none.json', 'No such file'),
+    ('tls://127.0.0.1:8786', 'not tcp://HOST:PORT'),
+    ('tcp://::1:8786', r'nor tcp://\[IPV6\]:PORT'),
+    ('tcp://127.0.0.1:65537', 'not tcp://HOST:PORT'),
   ],
 )
 def test_a_scheduler_that_is_not_there_is_refused(
@@ -106,13 +139,208 @@ def test_a_scheduler_that_is_not_there_is_refused(
 
 
 @needs_dask
-@pytest.mark.parametrize('text', ['', '[]', '{}', '{"address": 3}'])
+@pytest.mark.parametrize(
+  ('text', 'said'),
+  [
+    (b'', 'it is empty: its scheduler has not begun to listen yet'),
+    (b'{"address": "tcp:', 'it is no JSON: '),
+    (b'\xff\xfe', 'can.t decode byte'),
+    (b'[]', 'it holds no address'),
+    (b'{}', 'it holds no address'),
+    (b'{"address": 3}', 'it holds no address'),
+    (b'{"address": "inproc://1"}', 'not tcp://HOST:PORT'),
+  ],
+)
+@pytest.mark.parametrize('name', ['scheduler.json', 'scheduler'])
 def test_a_file_that_no_scheduler_wrote_is_refused(
-  tmp_path: pathlib.Path, text: str
+  name: str, text: bytes, said: str, tmp_path: pathlib.Path
 ) -> None:
-  (tmp_path / 'scheduler.json').write_text(text)
-  with pytest.raises(cluster.ClusterError, match='or the file that it wrote'):
-    cluster.find(str(tmp_path / 'scheduler.json'))
+  (tmp_path / name).write_bytes(text)
+  with pytest.raises(
+    cluster.ClusterError, match=f'or the file that it wrote: .*{name}: .*{said}'
+  ):
+    cluster.find(str(tmp_path / name))
+
+
+@contextlib.contextmanager
+def listens(
+  answer: bytes | None, family: socket.AddressFamily = socket.AF_INET
+) -> Iterator[str]:
+  """The address of a server that is no scheduler.
+
+  Args:
+    answer: What it says to everybody; None to hang up.
+    family: IPv4 or IPv6.
+  """
+  host = '::1' if family == socket.AF_INET6 else '127.0.0.1'
+  server = socket.create_server((host, 0), family=family)
+  links = []
+
+  def serve() -> None:
+    while True:
+      try:
+        link, _ = server.accept()
+      except OSError:
+        return
+      links.append(link)
+      if answer is None:
+        link.close()
+      else:
+        link.sendall(answer)
+
+  thread = threading.Thread(target=serve)
+  thread.start()
+  named = f'[{host}]' if ':' in host else host
+  yield f'tcp://{named}:{server.getsockname()[1]}'
+  server.shutdown(socket.SHUT_RDWR)
+  thread.join()
+  for each in (server, *links):
+    each.close()
+
+
+@needs_dask
+@pytest.mark.parametrize(
+  ('answer', 'said'),
+  [
+    (b'', 'answers nothing within 0.5 s'),
+    (None, 'what listens there '),
+    (b'SSH-2.0-OpenSSH_9.2\r\n', 'what listens there is no scheduler: '),
+    (b'HTTP/1.1 400 Bad Request\r\n\r\n', 'there is no scheduler: '),
+  ],
+)
+def test_a_port_of_something_else_is_refused_within_the_limit(
+  answer: bytes | None, said: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+  monkeypatch.setattr(cluster, '_CONNECT_S', 0.5)
+  with (
+    listens(answer) as address,
+    pytest.raises(cluster.ClusterError, match=said),
+  ):
+    cluster.find(address)
+
+
+@needs_dask
+@pytest.mark.parametrize(
+  'family', [socket.AF_INET, pytest.param(socket.AF_INET6, marks=needs_ipv6)]
+)
+def test_a_scheduler_of_another_version_is_refused(
+  family: socket.AddressFamily, monkeypatch: pytest.MonkeyPatch
+) -> None:
+  theirs = {'packages': {'dask': '1.2', 'distributed': '1.2'}}
+  monkeypatch.setattr(dask_probe, 'ask', lambda address, limit_s: theirs)
+  with (
+    listens(b'', family) as address,
+    pytest.raises(
+      cluster.ClusterError,
+      match=rf'of this command: dask is 1.2 at {re.escape(address)}, not 2',
+    ),
+  ):
+    cluster.find(address)
+
+
+@needs_dask
+def test_a_scheduler_that_gets_no_workers_is_refused(
+  monkeypatch: pytest.MonkeyPatch,
+) -> None:
+  monkeypatch.setattr(dask_probe, 'ask', lambda place, limit_s: {'workers': {}})
+  monkeypatch.setattr(cluster, '_WORKERS_S', 0.1)
+  with pytest.raises(
+    cluster.ClusterError,
+    match=r'must have workers: tcp://a:1 had none for 0\.1 s',
+  ):
+    list(cluster.run([pool.Job('a', print, ())], 'tcp://a:1'))
+
+
+@needs_dask
+@pytest.mark.parametrize('error', [futures.CancelledError(), TimeoutError()])
+def test_a_scheduler_that_goes_away_as_a_result_is_fetched_is_told(
+  error: Exception, monkeypatch: pytest.MonkeyPatch
+) -> None:
+  fetched = types.SimpleNamespace(
+    key='r a', cancelled=lambda: False, exception=lambda limit_s: None
+  )
+  fetched.result = mock.Mock(side_effect=error)
+  fetched.add_done_callback = lambda call: call(fetched)
+  client = mock.MagicMock()
+  client.return_value.__enter__.return_value.submit.return_value = fetched
+  client.return_value.__exit__.return_value = False
+  monkeypatch.setattr('distributed.Client', client)
+  monkeypatch.setattr(cluster, '_wait_for_workers', lambda place: None)
+  monkeypatch.setattr(cluster.uuid, 'uuid4', lambda: mock.Mock(hex='r'))
+  with pytest.raises(
+    cluster.ClusterError, match=r'went away: tcp://a:1: \w.+ What was flown is'
+  ):
+    list(cluster.run([pool.Job('a', print, ())], 'tcp://a:1'))
+
+
+# A cluster that goes away while it works on the second of two jobs.
+LOST = """
+import os, pathlib, signal, sys, time
+from waggle_tasks import errors
+from waggle_tasks.experiments import cluster, pool
+
+scheduler, number, pid = sys.argv[1:]
+address = cluster.find(scheduler)
+cluster._LOOK_S, cluster._CONNECT_S = 0.5, 2.0
+sleep = lambda report, s: time.sleep(s)
+jobs = [pool.Job(str(s), sleep, (s,)) for s in (0, 60)]
+try:
+  for done in cluster.run(jobs, address):
+    print(done.job.name)
+    cluster._WORKERS_S = 1.0
+    os.kill(int(pid), int(number))
+except errors.WaggleError as error:
+  print(error)
+"""
+
+
+@needs_dask
+@pytest.mark.parametrize(
+  ('victim', 'number', 'said'),
+  [
+    ('scheduler', signal.SIGKILL, 'the connection to it is lost'),
+    ('scheduler', signal.SIGSTOP, 'for 1 s what listens there answers nothing'),
+    ('worker', signal.SIGKILL, 'for 1 s it has no workers'),
+  ],
+)
+def test_a_cluster_that_goes_away_is_told_in_one_line_with_how_to_go_on(
+  victim: str,
+  number: int,
+  said: str,
+  dask: Callable[..., subprocess.Popen[bytes]],
+  tmp_path: pathlib.Path,
+  wait_until: Callable[..., None],
+) -> None:
+  path = tmp_path / 'scheduler.json'
+  host = '[::1]' if IPV6 else '127.0.0.1'
+  parts = {
+    'scheduler': dask(
+      'scheduler', f'--host={host}', '--port=0', f'--scheduler-file={path}',
+      '--no-dashboard',
+    ),
+    'worker': dask(
+      'worker', f'--scheduler-file={path}', '--nthreads=1', '--no-nanny',
+      '--no-dashboard',
+    ),
+  }  # fmt: skip
+  address = listening(path, wait_until)
+  done = subprocess.run(
+    [
+      sys.executable, '-c', LOST, str(path), str(int(number)),
+      str(parts[victim].pid),
+    ],
+    capture_output=True, text=True, timeout=100, check=False,
+  )  # fmt: skip
+  for part in parts.values():
+    part.kill()
+  assert done.stderr == ''
+  first, line = done.stdout.splitlines()
+  assert first == '0'
+  assert line.startswith(f'`scheduler` went away: {address}: {said}')
+  assert line.endswith(
+    'What was flown is kept: when it runs again, the same command goes on with'
+    ' the rest'
+  )
 
 
 def test_without_the_extra_the_line_that_mends_it_is_told(

@@ -214,6 +214,18 @@ def test_the_fit_is_the_published_one() -> None:
   assert fit.crossing('hours', {}, 0.5) == pytest.approx(2.71, abs=0.01)
 
 
+@pytest.mark.parametrize('count', [6, 10, 18])
+def test_a_slope_of_nothing_is_told_as_nothing(count: int) -> None:
+  angle = np.repeat([0.0, 30.0, 60.0], count)
+  distance = np.tile([1.0, 2.0], 3 * count // 2)
+  success = distance > 1.5
+  for first in (0, 1):  # The nearer read once, the further failed once.
+    success[first::count] = ~success[first::count]
+  fit = logistic.fit({'angle': angle, 'distance': distance}, success)
+  assert fit.slopes['angle'] == 0
+  assert fit.slopes['distance'] > 0.1
+
+
 @pytest.mark.parametrize('passed', ['0000', '1111', '0011', '0111', '0101'])
 def test_separated_outcomes_have_no_fit(passed: str) -> None:
   hours = np.array([1.0, 2.0, 2.0, 3.0])
@@ -267,8 +279,20 @@ def test_pictures_and_page_are_drawn_the_same_twice(
   assert svg.count('3/5') == 4
   for word in ('viewing angle, degrees', 'distance, m', 'noise sigma = 5'):
     assert word in svg
+  assert 'not flown' not in svg
   png = (tmp_path / 'a' / 'envelope.png').read_bytes()
   assert png.startswith(b'\x89PNG')
+
+
+def test_a_picture_says_what_its_white_cells_are(
+  make: object, tmp_path: pathlib.Path
+) -> None:
+  pytest.importorskip('matplotlib')
+  rows = make.rows('distance_m=1,2', 'bearing_deg=0,30', observers=1)
+  rows += make.rows('distance_m=3', 'bearing_deg=0', observers=1)
+  figures.draw(envelope.panels(rows), tmp_path)
+  svg = (tmp_path / 'envelope.svg').read_text()
+  assert svg.count('not flown') == 1
 
 
 def test_many_sweeps_of_one_factor_each_make_one_report(make: object) -> None:

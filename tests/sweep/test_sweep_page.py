@@ -76,6 +76,28 @@ def test_every_cell_has_its_limits(page: str) -> None:
   assert '1.3 60 1/2 1.3% to 98.7% 1 1' in words(table)
 
 
+def test_a_table_of_the_only_map_has_no_more_to_its_name(make: object) -> None:
+  page = sweep_page.draw(make.rows('distance_m=1,2'), 'mine', None)
+  assert '<h2>Every cell</h2>' in page
+  maps = make.rows(
+    'distance_m=1,2', 'bearing_deg=0,30', 'noise_sigma=0,5', observers=1
+  )
+  page = sweep_page.draw(maps, 'mine', None)
+  assert '<h2>Every cell: noise sigma = 5</h2>' in page
+
+
+def test_a_case_that_several_observers_failed_has_one_command(
+  make: object,
+) -> None:
+  lost = {'decoded': None, 'failures': ('message: none',)}
+  rows = make.rows('distance_m=1,2', observers=5, fate=lambda *_: lost)
+  page = sweep_page.draw(rows, 'mine', None)
+  assert page.count('<pre>waggle broadcast') == 2
+  failed = words(page.split('What failed')[1].split('Every cell')[0])
+  for number in range(1, 6):
+    assert failed.count(f'observer_{number} : message: none') == 2
+
+
 def test_a_failure_has_its_reason_and_the_command_that_repeats_it(
   page: str, rows: list[dict[str, object]]
 ) -> None:

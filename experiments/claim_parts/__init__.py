@@ -1,0 +1,1 @@
+"""What documents say, and what is made to see whether it is so."""

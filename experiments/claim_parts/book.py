@@ -1,0 +1,246 @@
+"""Every claim as data: what is flown for it, and how that is compared.
+
+What documents say is not repeated here: it is read from them. Each command is
+a part of the one that stands above the table, small enough that all of them
+together take less than 30 minutes on two cores.
+"""
+
+from collections.abc import Sequence
+import dataclasses
+
+TEXT, ROWS, CELLS, PART, PATTERN = 'text', 'rows', 'cells', 'part', 'pattern'
+COPY, SUM, UNCHECKED = 'copy', 'sum', 'unchecked'
+HOWS = {
+  TEXT: 'every line of the block is printed again',
+  ROWS: 'every row and every failure that is printed is in the block',
+  CELLS: 'so is every cell of a sweep, with its limits',
+  PART: 'counts of a part fit into those of the whole',
+  PATTERN: 'what a pattern finds is the same in both',
+  COPY: 'every line is in another block too',
+  SUM: 'it is the sum of the other blocks of its document',
+  UNCHECKED: 'nothing is compared',
+}
+
+
+@dataclasses.dataclass(frozen=True)
+class Claim:
+  """A claim of a document.
+
+  Attributes:
+    block: The name that its block is marked with.
+    how: One of `HOWS`.
+    command: Arguments of `waggle` that make a part of it; may be empty.
+    table: Number of the table in the block, from 0; None for any that fits.
+    detail: A pattern; another block; blocks, and titles of tables, that are
+      left out of a sum; or why nothing is compared.
+  """
+
+  block: str
+  how: str
+  command: Sequence[str] = ()
+  table: int | None = None
+  detail: str = ''
+
+
+@dataclasses.dataclass(frozen=True)
+class Sentence:
+  """Numbers in a sentence that stand in blocks too.
+
+  Attributes:
+    document: Where the sentence is.
+    pattern: What finds the numbers in it.
+    blocks: Where they come from; of several the sum.
+    source: What finds the numbers in these.
+  """
+
+  document: str
+  pattern: str
+  blocks: Sequence[str]
+  source: str
+
+
+_DECOYS = {
+  'control': 'circles,diagonals,random_walk,navigation,swapped,repeated,'
+  'half_frame'
+}  # fmt: skip
+_BARE = 'separators=off,final_null=off'
+
+
+def _sweep(
+  block: str,
+  repeats: int,
+  *flags: str,
+  receiver: str = 'view_bank',
+  observers: int = 5,
+  how: str = CELLS,
+  table: int | None = None,
+  **grid: str,
+) -> Claim:
+  """Some cells of a sweep of random payloads."""
+  command = (
+    'sweep', f'--receiver={receiver}', '--payload=random',
+    f'--observers={observers}', f'--repeats={repeats}', *flags,
+    *(f'--grid={name}={values}' for name, values in grid.items()),
+  )  # fmt: skip
+  return Claim(block, how, command, table)
+
+
+def _disturbed(table: int, *flags: str, **grid: str) -> Claim:
+  return _sweep('disturbances', 2, *flags, table=table, **grid)
+
+
+_SWAY = '--observer_drift_m=0.002', '--observer_yaw_drift_deg=0.1'
+
+CLAIMS = {
+  'main-job': Claim('main-job', TEXT, ('broadcast',)),
+  'main-totals': Claim('main-totals', COPY, detail='paper'),
+  'map-far-aside': _sweep(
+    'map', 5, observers=1, noise_sigma='10', distance_m='3.0', bearing_deg='75'
+  ),
+  'map-near': _sweep(
+    'map', 5, observers=1, noise_sigma='0', distance_m='0.6', bearing_deg='0'
+  ),
+  'noisy': _sweep(
+    'noisy', 5, observers=1, noise_sigma='20', distance_m='1.6',
+    bearing_deg='45',
+  ),
+  'far': _sweep(
+    'far', 3, observers=1, noise_sigma='10', distance_m='4.0', bearing_deg='45'
+  ),
+  'grazing': _sweep(
+    'grazing', 3, observers=1, noise_sigma='0', distance_m='2.5',
+    bearing_deg='85',
+  ),
+  'klt-map': _sweep(
+    'klt-map', 3, receiver='klt', observers=1, distance_m='1.3,2.0',
+    bearing_deg='45',
+  ),
+  'payloads': Claim(
+    'payloads', PART,
+    ('sweep', '--receiver=view_bank', '--grid=payload=010101,111111'),
+  ),
+  'sway-default': Claim(
+    'sway-default', TEXT,
+    (
+      'sweep', '--receiver=view_bank', '--repeats=5',
+      '--grid=observer_drift_m=0.002', '--grid=observer_yaw_drift_deg=0.1',
+    ),
+  ),
+  'sway-more': _sweep(
+    'sway', 2, '--observer_yaw_drift_deg=0.3', table=0,
+    observer_drift_m='0.005',
+  ),
+  'sway-noise': _sweep('sway', 2, *_SWAY, table=1, noise_sigma='10'),
+  'sway-dancer': _sweep('sway', 2, table=2, performer_drift_m='0.002'),
+  'clutter': _sweep('clutter', 2, '--floor=clutter', table=0, walls='clutter'),
+  'clutter-sway': _sweep(
+    'clutter', 2, '--floor=clutter', *_SWAY, table=1, walls='clutter'
+  ),
+  'blackout': _disturbed(0, '--blackout_length_s=2', blackout_s='60'),
+  'brightness': _disturbed(1, '--shadows', brightness='1.5'),
+  'bystanders': _disturbed(2, bystanders='2'),
+  'dropped': _disturbed(3, dropped_share='0.3'),
+  'exposure': _disturbed(4, exposure_s='0.04'),
+  'flicker': _disturbed(5, flicker_share='0.2'),
+  'freeze': _disturbed(6, '--freeze_length_s=6', freeze_s='93'),
+  'jitter': _disturbed(7, jitter_m='0.03'),
+  'late': _disturbed(8, late_frames='25'),
+  'occluder': _disturbed(9, occluder_every_s='20'),
+  'blackout-part': _disturbed(
+    10, '--blackout_length_s=2', '--blackout_share=0.4', blackout_s='30'
+  ),
+  'photons': _disturbed(11, photons='100'),
+  'repeated': _disturbed(12, repeated_share='0.3'),
+  'step': _disturbed(13, '--step_s=40', step_gain='2'),
+  'sun': _disturbed(14, sun='moving'),
+  'decoys': _sweep('decoys', 1, how=PART, **_DECOYS),
+  'decoys-wide': _sweep(
+    'decoys-wide', 1, '--distance_m=1.0', '--half_span_deg=75', how=PART,
+    **_DECOYS,
+  ),
+  'decoys-noise': _sweep(
+    'decoys-noise', 1, '--noise_sigma=10', how=PART, **_DECOYS
+  ),
+  # Of the receiver that it speaks of: the tables of others are left out.
+  'together': Claim(
+    'together', SUM, detail='klt-map klt view_bank:max_repeated=1'
+  ),
+  'frozen': _sweep(
+    'living-cameras', 2, '--freeze_length_s=600', observers=3, table=1,
+    freeze_s='94', noise_sigma='5',
+  ),
+  'frozen-klt': _sweep(
+    'living-cameras', 2, '--freeze_length_s=600', observers=3, table=0,
+    receiver='klt', freeze_s='93', noise_sigma='0',
+  ),
+  'paper': Claim(
+    'paper', ROWS,
+    (
+      'suite', '--case=one-observer,two-observers,distance-1-0,span-45,'
+      'four-forward,no-send,black-input',
+    ),
+  ),
+  'paper-view-bank': Claim(
+    'paper-view-bank', ROWS,
+    (
+      'suite', '--receiver=view_bank',
+      '--case=one-observer,distance-1-0,span-45',
+    ),
+  ),
+  'sensitivity': Claim(
+    'sensitivity', PART,
+    (
+      'sensitivity', '--variant=start-low,eye-back,jitter-3',
+      '--case=distance-1-0,distance-1-6',
+    ),
+  ),
+  'ablations': Claim(
+    'ablations', PART, ('ablate', '--case=one-observer,distance-1-0')
+  ),
+  'ablations-decoys': _sweep(
+    'ablations-decoys', 1, receiver=f'view_bank:{_BARE}', how=PART,
+    control='half_frame',
+  ),
+  'ablations-decoys-klt': _sweep(
+    'ablations-decoys', 1, receiver=f'klt:{_BARE},forward_backward=off',
+    how=PART, control='half_frame',
+  ),
+  'boundary': Claim('boundary', TEXT, ('boundary', '--half_span_deg=45')),
+  'timings': Claim(
+    'timings', UNCHECKED, detail='times and memory, which differ between runs'
+  ),
+  'pictures': Claim(
+    'pictures', PATTERN, ('bench', '--check', '--scenes=1'),
+    detail=r'render differ by (\d+) grey levels at most',
+  ),
+  'event-logs': Claim(
+    'event-logs', ROWS, ('bench', '--check_events', '--suite=controls')
+  ),
+}  # fmt: skip
+
+_RIGHT = r'^right: (\d+)/(\d+) exposures'
+SENTENCES = {
+  'readme-map': Sentence(
+    'README.md', r'read (\S+) of the (\S+) messages of this map',
+    ('map', 'noisy', 'far', 'grazing'), _RIGHT,
+  ),
+  'readme-klt': Sentence(
+    'README.md', r'`klt` read (\S+) of (\d+)', ('klt-map',), _RIGHT
+  ),
+  'readme-exposures': Sentence(
+    'README.md', r'In all of (\S+) exposures', ('together',),
+    r'^right: \d+/(\d+) ',
+  ),
+  'readme-limit': Sentence(
+    'README.md', r'at most (\S+) %, with 95 % confidence', ('together',),
+    r'^wrong messages: .*; at most (\S+)% ',
+  ),
+  'readme-view-bank': Sentence(
+    'README.md', r'reads (\d+)/(\d+) and passes', ('paper-view-bank',),
+    r'^messages correct: (\d+)/(\d+) ',
+  ),
+  'readme-groups': Sentence(
+    'README.md', r'and passes (\d+)/(\d+) from', ('paper-view-bank',),
+    r'^broadcasts passed: (\d+)/(\d+) ',
+  ),
+}  # fmt: skip

@@ -1,0 +1,143 @@
+"""Dances of which a part is hidden, shown again: nothing wrong is ever read."""
+
+from collections.abc import Callable, Iterator
+
+import numpy as np
+import pytest
+
+from waggle_tasks import scenario
+from waggle_tasks.agents import receivers
+from waggle_tasks.experiments import spoilers, tape
+from waggle_tasks.protocol import timing
+
+Stream = tape.Stream
+# With so many motions hidden, a frame is left.
+HIDDEN = {'seven_bits': 1, 'begun_anew': 1, 'run_together': 2}
+Flown = Callable[[str], tuple[scenario.Scenario, tape.Tape]]
+
+
+@pytest.fixture(scope='module')
+def flown(short: dict[str, object]) -> Flown:
+  """What one observer sees of a control in the fast language; flown once."""
+  made = {}
+
+  def fly(control: str) -> tuple[scenario.Scenario, tape.Tape]:
+    if control not in made:
+      scene = scenario.Scenario(control=control, observers=1, seed=3, **short)
+      made[control] = scene, tape.record(scene, lambda frames: None)[0]
+    return made[control]
+
+  return fly
+
+
+def read(stream: Stream, name: str, scene: scenario.Scenario) -> list[str]:
+  """The messages that a receiver reads."""
+  reader = receivers.make(name, scene.agreement)
+  return [
+    event.message.bits
+    for image, time_s in stream
+    for event in reader.step(image, time_s)
+    if event.message
+  ]
+
+
+def hidden(
+  scene: scenario.Scenario, first: int, count: int, kind: str
+) -> spoilers.Loss:
+  """A loss over some motions, from one rest into another."""
+  slots = scene.schedule.slots
+  begin_s = slots[first].begin_s - 0.3
+  end_s = slots[first + count - 1].end_s + 0.3
+  return spoilers.Loss(kind, begin_s, end_s - begin_s)
+
+
+@pytest.mark.parametrize('name', ['klt', 'view_bank'])
+@pytest.mark.parametrize('control', HIDDEN)
+def test_with_a_part_hidden_no_message_is_read(
+  control: str, name: str, flown: Flown
+) -> None:
+  scene, seen = flown(control)
+  count = HIDDEN[control]
+  kinds = [*spoilers.LOSSES]
+  for first in range(1, len(scene.schedule.slots) - count):
+    # Each kind in its turn: all of them everywhere are many minutes.
+    loss = hidden(scene, first, count, kinds[first % len(kinds)])
+    assert read(loss(seen.play()), name, scene) == [], loss
+
+
+def test_by_order_alone_a_message_is_read_that_was_not_danced(
+  flown: Flown,
+) -> None:
+  scene, seen = flown('seven_bits')
+  loss = hidden(scene, 3, 1, 'frozen')
+  assert read(loss(seen.play()), 'klt:clock=off', scene) != []
+  assert read(loss(seen.play()), 'klt', scene) == []
+
+
+def cut(stream: Stream, begin_s: float, end_s: float) -> Stream:
+  """Without a part, what comes after it as if it came at once."""
+  for image, time_s in stream:
+    if time_s < begin_s:
+      yield image, time_s
+    elif time_s >= end_s:
+      yield image, time_s - end_s + begin_s + timing.FRAME_S
+
+
+@pytest.mark.parametrize('name', ['klt', 'view_bank'])
+def test_a_recording_from_which_a_bit_was_cut_gives_no_message(
+  name: str, flown: Flown
+) -> None:
+  """What is left is in its time; the picture cannot tell, but START can.
+
+  Seven bits danced slower than agreed are as long as six at the pace: only
+  what is cut from rest to rest could pass, and then six bits were danced.
+  """
+  scene, seen = flown('five_bits')
+  slots = scene.schedule.slots
+  stream = cut(seen.play(), slots[2].begin_s - 1.0, slots[3].begin_s - 1.0)
+  assert read(stream, name, scene) == []
+
+
+@pytest.mark.parametrize('name', ['klt', 'view_bank'])
+@pytest.mark.parametrize('gap_s', [7.0, 60.0])
+def test_halves_of_two_dances_are_no_message(
+  name: str, gap_s: float, flown: Flown
+) -> None:
+  scene, seen = flown('none')
+  middle_s = scene.schedule.slots[4].begin_s - 1.0
+
+  def halves() -> Iterator[tuple[np.ndarray, float]]:
+    for image, time_s in seen.play():
+      yield image, time_s + (gap_s if time_s > middle_s else 0.0)
+
+  assert read(seen.play(), name, scene) == [scene.payload]
+  assert read(halves(), name, scene) == []
+
+
+@pytest.mark.parametrize('kind', spoilers.LOSSES)
+def test_a_loss_that_can_hide_no_gesture_costs_nothing(
+  kind: str, flown: Flown
+) -> None:
+  """In a rest; `view_bank` goes on where it was."""
+  scene, seen = flown('none')
+  begin_s = scene.schedule.slots[3].end_s + 1.2
+  loss = spoilers.Loss(kind, begin_s, 0.8 * scene.agreement.clock.blind_s)
+  assert read(loss(seen.play()), 'view_bank', scene) == [scene.payload]
+
+
+@pytest.mark.parametrize('kind', spoilers.LOSSES)
+@pytest.mark.parametrize('name', ['klt', 'view_bank'])
+def test_a_loss_that_can_hide_one_breaks_the_frame_and_says_so(
+  kind: str, name: str, flown: Flown
+) -> None:
+  scene, seen = flown('none')
+  loss = hidden(scene, 4, 1, kind)
+  reader = receivers.make(name, scene.agreement)
+  events = [
+    event
+    for image, time_s in loss(seen.play())
+    for event in reader.step(image, time_s)
+  ]
+  assert not any(event.message for event in events)
+  reasons = ' '.join(event.rejection or '' for event in events)
+  assert 'must come' in reasons or 'nothing was seen' in reasons, reasons
