@@ -53,7 +53,7 @@ def check_text(name: str, kind: type[Exception]) -> None:
     name.encode()
   except UnicodeEncodeError:
     raise kind(
-      f'names must be text in {sys.getfilesystemencoding()}: got {name!a};'
+      f'names must be text in {sys.getfilesystemencoding().upper()}: got {name!a};'
       ' give the file another name'
     ) from None
 

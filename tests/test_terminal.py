@@ -107,9 +107,30 @@ def test_a_name_that_is_no_text_is_refused_before_the_work(
   )
   assert child.returncode == 2
   (said,) = child.stderr.splitlines()
-  assert said.startswith(f'waggle {command}: names must be text in utf-8: got')
+  assert said.startswith(f'waggle {command}: names must be text in UTF-8: got')
   assert 'lat\\udce9.webm' in said
   assert [*tmp_path.iterdir()] == []
+
+
+@pytest.mark.parametrize(
+  'words', ['decode film.webm', 'decode pictures --fps=25', 'broadcast --video']
+)
+def test_films_in_a_folder_whose_name_is_no_text_are_refused(
+  words: str, tmp_path: pathlib.Path
+) -> None:
+  home = tmp_path / os.fsdecode(b'lat\xe9')
+  (home / 'pictures').mkdir(parents=True)
+  for name in ('film.webm', 'pictures/1.png', 'pictures/2.png'):
+    (home / name).write_bytes(b'not read')
+  before = sorted(home.rglob('*'))
+  child = subprocess.run(
+    [sys.executable, '-m', MAIN, *words.split()],
+    capture_output=True, text=True, check=False, cwd=home,
+  )  # fmt: skip
+  assert child.returncode == 2
+  (said,) = child.stderr.splitlines()
+  assert 'names must be text in UTF-8: got' in said
+  assert sorted(home.rglob('*')) == before
 
 
 @pytest.mark.parametrize(
