@@ -52,9 +52,10 @@ def check_text(name: str, kind: type[Exception]) -> None:
   try:
     name.encode()
   except UnicodeEncodeError:
+    encoding = sys.getfilesystemencoding().upper()
     raise kind(
-      f'names must be text in {sys.getfilesystemencoding().upper()}: got {name!a};'
-      ' give the file another name'
+      f'names must be text in {encoding}: got {name!a}; give the file another'
+      ' name'
     ) from None
 
 
