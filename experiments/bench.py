@@ -10,12 +10,12 @@ bad input.
 """
 
 from collections.abc import Sequence
+import contextlib
 import pathlib
 import sys
 
 from absl import flags
 
-from waggle_tasks import errors
 from waggle_tasks.experiments import launch
 
 _REPEATS = flags.DEFINE_integer('repeats', 3, 'How often each part is run.')
@@ -45,20 +45,24 @@ _SUITE = flags.DEFINE_string(
 )
 
 
-class OutputError(errors.WaggleError):
-  """A file that cannot be written."""
-
-
 def main(argv: Sequence[str]) -> int:
   """Measures or checks what the flags ask for."""
   del argv  # All is in the flags.
   # Imported here, as processes that measure import this module when it is run
   # by itself, and must not load a GL stack before they are confined.
   from waggle_tasks.experiments import records
+
+  with contextlib.ExitStack() as stack:
+    if _JSON.value is not None:
+      stack.enter_context(records.claimed(pathlib.Path(_JSON.value), 'json'))
+    return _run()
+
+
+def _run() -> int:
+  """Does it, and leaves all numbers in the file whose name is claimed."""
+  from waggle_tasks.experiments import files, records
   from waggle_tasks.experiments.bench_parts import actions, sections
 
-  if _JSON.value is not None:
-    _check_new(pathlib.Path(_JSON.value))
   here, done = actions.machine(), []
   if _CHECK.value:
     done.append(actions.check_pictures(_SCENES.value, _SEED.value))
@@ -69,20 +73,11 @@ def main(argv: Sequence[str]) -> int:
       here['renderer'], _REPEATS.value, _SIMULATED_S.value, _LONG.value
     )
     done.append(actions.measure(here, _ONLY.value, settings))
-  print('\n\n'.join(each.text for each in done))
   if _JSON.value is not None:
     found = {name: value for each in done for name, value in each.found.items()}
-    text = records.pretty({**here, **found})
-    pathlib.Path(_JSON.value).write_text(text, encoding='utf-8')
+    files.put(pathlib.Path(_JSON.value), records.pretty({**here, **found}))
+  print('\n\n'.join(each.text for each in done))
   return 0 if all(each.passed for each in done) else 1
-
-
-def _check_new(path: pathlib.Path) -> None:
-  """Refuses a file that exists or cannot be made, before work."""
-  if path.exists() or not path.absolute().parent.is_dir():
-    raise OutputError(
-      f'`json` must be a new file in a folder that exists: got {str(path)!r}'
-    )
 
 
 if __name__ == '__main__':

@@ -7,7 +7,8 @@ that a receiver took. Exit status 0 when the group passed, 1 when it did not, 2
 on bad input.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+import contextlib
 import datetime
 import pathlib
 import sys
@@ -15,18 +16,20 @@ import sys
 from absl import flags
 from dm_control import composer
 import dm_env
-import tqdm
 
 from waggle_tasks import scenario
 from waggle_tasks.agents import observer_agent, receivers
 from waggle_tasks.experiments import (
   evaluator,
+  job_progress,
   launch,
   nulls,
+  outside,
   provenance,
   recording_flags,
   records,
   scenario_flags,
+  source_files,
   table,
 )
 from waggle_tasks.experiments import rollout as rollout_lib
@@ -50,20 +53,36 @@ def main(argv: Sequence[str]) -> int:
   scene = scenario_flags.read()
   receivers.make(_RECEIVER.value, scene.agreement)
   nulls.check([scene], _RECEIVER.value)
-  folder = pathlib.Path(_OUTPUT.value or records.free_folder('broadcast'))
   command = provenance.command_line('broadcast', launch.given_flags())
-  with records.new_folder(folder) as draft:
+  try:
+    foreign = outside.paths(_RECEIVER.value, [scene])
+  except source_files.UnknownSourceError as error:
+    foreign = {}  # One flight stands for itself; it is only not told so well.
+    print(f'provenance.json will not be complete: {error}', file=sys.stderr)
+  with _folder() as (draft, folder):
     began = datetime.datetime.now(datetime.UTC)
     with recording_flags.recorders(draft, scene) as watchers:
       rollout = _roll(scene, _RECEIVER.value, watchers)
     verdict = evaluator.evaluate(scene, rollout)
     records.write_run(
       draft, scene, _RECEIVER.value, rollout, verdict,
-      provenance.Provenance.of(command, rollout.renderer, began),
+      provenance.Provenance.of(command, rollout.renderer, began, foreign),
     )  # fmt: skip
   print(report(scene, verdict))
   print(f'Run folder: {folder}, report: {folder / document.NAME}')
   return 0 if verdict.passed else 1
+
+
+@contextlib.contextmanager
+def _folder() -> Iterator[tuple[pathlib.Path, pathlib.Path]]:
+  """A draft of the run folder of the flags, and that folder."""
+  if not _OUTPUT.value:
+    with records.next_folder('broadcast') as pair:
+      yield pair
+    return
+  folder = pathlib.Path(_OUTPUT.value)
+  with records.new_folder(folder) as draft:
+    yield draft, folder
 
 
 def _roll(
@@ -72,10 +91,9 @@ def _roll(
   watchers: Sequence[rollout_lib.Watcher],
 ) -> rollout_lib.Rollout:
   """Runs the episode behind a progress bar of simulated seconds."""
-  frames = timing.frames(scene.episode_s)
   form = '{desc}: {percentage:3.0f}%|{bar}| {n:.0f}/{total:.0f} s'
-  with tqdm.tqdm(
-    total=frames * timing.FRAME_S, desc='broadcast', mininterval=0.5,
+  with job_progress.seconds_bar(
+    timing.frames(scene.episode_s), desc='broadcast',
     bar_format=form + ' simulated [{elapsed} < {remaining}]',
   ) as bar:  # fmt: skip
 
@@ -86,7 +104,7 @@ def _roll(
     ) -> None:
       del environment, team
       if not timestep.first():
-        bar.update(timing.FRAME_S)
+        bar.update()
 
     return rollout_lib.run(scene, receiver_name, [*watchers, watch])
 

@@ -28,6 +28,7 @@ from waggle_tasks.experiments import (
   picture_folder,
   reader,
   recordings,
+  records,
 )
 from waggle_tasks.experiments.video import annotated
 from waggle_tasks.protocol import agreement as agreement_lib
@@ -128,6 +129,9 @@ def _video(path: pathlib.Path) -> int:
     readers = [reader.Reader(name, known) for name in names]
     film = None
     if _ANNOTATE.value is not None:
+      stack.enter_context(
+        records.claimed(pathlib.Path(_ANNOTATE.value), 'annotate')
+      )
       film = annotated.Film(pathlib.Path(_ANNOTATE.value), readers[0])
       stack.enter_context(film)
     for image, time_s in recording.frames(part):

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 import importlib.util
+import io
 import itertools
 import math
 import pathlib
@@ -9,7 +10,7 @@ import pathlib
 import numpy as np
 
 from waggle_tasks import errors
-from waggle_tasks.experiments import envelope, heat, palette
+from waggle_tasks.experiments import envelope, files, heat, palette
 
 NAMES = 'envelope.svg', 'envelope.png'
 MISSING = (
@@ -74,10 +75,13 @@ def draw(
       figure.legend(
         handles=[sample], labels=['not flown'], loc='outside lower right'
       )
-    paths = [folder / name for name in NAMES]
-    figure.savefig(paths[0], metadata={'Date': None})
-    figure.savefig(paths[1], dpi=_DPI)
-  return paths
+    drawn, painted = io.BytesIO(), io.BytesIO()
+    figure.savefig(drawn, format='svg', metadata={'Date': None})
+    figure.savefig(painted, format='png', dpi=_DPI)
+  return [
+    files.replace(folder / name, data.getvalue())
+    for name, data in zip(NAMES, (drawn, painted), strict=True)
+  ]
 
 
 def _unflown(panel: envelope.Panel) -> list[tuple[object, object]]:

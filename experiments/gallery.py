@@ -24,6 +24,7 @@ from waggle_tasks.experiments import (
   launch,
   palette,
   png,
+  records,
   story,
   sweep_runner,
   traces,
@@ -101,6 +102,7 @@ def main(argv: Sequence[str]) -> int:
   """Flies the broadcast and writes the pictures; returns the exit status."""
   del argv
   folder = pathlib.Path(_OUTPUT.value)
+  records.check_writable(folder)
   if _SWEEP.value:
     print(*_envelope(folder, _SWEEP.value), sep='\n')
     return 0

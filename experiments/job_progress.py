@@ -31,6 +31,21 @@ def reporter(report: Callable[[float], None]) -> rollout_lib.Watcher:
   return watch
 
 
+def seconds_bar(frames: int, **look: object) -> tqdm.tqdm:
+  """A bar that counts frames and shows them as simulated seconds.
+
+  Seconds that are added up one frame after the other end beside their total,
+  and often beyond it; whole numbers do not.
+
+  Args:
+    frames: How many there are.
+    **look: What else `tqdm` takes.
+  """
+  return tqdm.tqdm(
+    total=frames, unit_scale=timing.FRAME_S, mininterval=0.5, **look
+  )
+
+
 def shown(
   news: Iterable[pool.Progress | pool.Done],
   frames: Mapping[str, int],
@@ -45,10 +60,9 @@ def shown(
       names of those that are under way.
   """
   flown, active, done = {}, {}, 0
-  with tqdm.tqdm(
-    total=sum(frames.values()), unit_scale=timing.FRAME_S, mininterval=0.5,
-    smoothing=0, bar_format=_FORM + ' {remaining}]',
-  ) as bar:  # fmt: skip
+  total = sum(frames.values())
+  form = _FORM + ' {remaining}]'
+  with seconds_bar(total, smoothing=0, bar_format=form) as bar:
     for each in news:
       name, before = each.job.name, flown.get(each.job.name, 0)
       if isinstance(each, pool.Progress):

@@ -5,15 +5,16 @@ A launcher is a module with a docstring, absl flags and `main(argv)`. It calls
 command runs it the same way. What needs GL is imported inside `main`, so that
 help works, and a machine that cannot render is told so in one line.
 
-Exit status: what `main` returns (None is 0), 2 on bad input, 130 on Ctrl-C.
+Exit status: what `main` returns (None is 0), 2 on bad input, 130 on Ctrl-C,
+141 when whoever reads the output went away.
 """
 
 from collections.abc import Sequence
+import contextlib
 import importlib
 import os
 import pathlib
 import re
-import signal
 import sys
 import textwrap
 import types
@@ -21,7 +22,7 @@ import types
 from absl import flags
 
 from waggle_tasks import errors, runtime
-from waggle_tasks.experiments import gl, health
+from waggle_tasks.experiments import files, gl, health, terminal
 from waggle_tasks.protocol import checks
 
 BAD_INPUT = 2
@@ -56,11 +57,16 @@ def run(
     argv: Its name or path, then its arguments; `sys.argv` when None.
     check_versions: Whether to refuse versions that cannot run together.
   """
-  # A polite kill ends like Ctrl-C: what is half written is removed.
-  signal.signal(signal.SIGTERM, signal.default_int_handler)
+  terminal.prepare()
   argv = list(sys.argv if argv is None else argv)
+  return terminal.told(lambda: _run(name, argv, check_versions))
+
+
+def _run(name: str, argv: list[str], check_versions: bool) -> int:
   program = f'waggle {pathlib.PurePath(argv[0]).stem}'
   try:
+    for argument in argv[1:]:
+      files.check_text(argument, flags.Error)
     if check_versions:
       runtime.require_versions()
       health.require()
@@ -73,14 +79,17 @@ def run(
     line, status = str(error), BAD_INPUT
   except KeyboardInterrupt:
     line, status = 'interrupted', INTERRUPTED
-  except Exception:
+  except BrokenPipeError:  # Whoever reads what is printed has seen enough.
+    raise
+  except Exception as error:
     # A failing GL stack raises anything, anywhere: ask whether it was that.
-    line, status = gl.problem(), BAD_INPUT
+    line, status = files.problem(error) or gl.problem(), BAD_INPUT
     if line is None:
       raise
     # Contexts that were never made complain again when they are dropped.
     sys.unraisablehook = lambda unraisable: None
-  print(f'{program}: {line}', file=sys.stderr)
+  with contextlib.suppress(OSError):  # The terminal may be gone.
+    print(f'{program}: {line}', file=sys.stderr)
   return status
 
 

@@ -9,7 +9,7 @@ import sys
 
 import waggle_tasks
 from waggle_tasks import errors
-from waggle_tasks.experiments import launch
+from waggle_tasks.experiments import launch, terminal
 
 # Name of a module in this folder -> what it does, in one line.
 COMMANDS = {
@@ -36,6 +36,11 @@ def main(argv: Sequence[str] | None = None) -> int:
     argv: The program and its arguments; `sys.argv` when None.
   """
   arguments = list(sys.argv if argv is None else argv)[1:]
+  terminal.prepare()
+  return terminal.told(lambda: _run(arguments))
+
+
+def _run(arguments: list[str]) -> int:
   name = arguments[0] if arguments else '--help'
   if name in ('--help', '-h'):
     print(listing())

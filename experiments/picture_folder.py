@@ -7,7 +7,7 @@ import re
 import cv2
 import numpy as np
 
-from waggle_tasks.experiments import sources
+from waggle_tasks.experiments import files, sources
 
 _ENDINGS = ('.png', '.jpg', '.jpeg')
 _RUN = 'config.json'  # What a run folder holds, whatever else is in it.
@@ -85,6 +85,7 @@ def _numbered(folder: pathlib.Path) -> dict[int, pathlib.Path]:
 
 
 def _read(path: pathlib.Path) -> np.ndarray:
+  files.check_text(str(path.absolute()), sources.RecordingError)
   image = cv2.imread(str(path.absolute()), cv2.IMREAD_COLOR_RGB)
   if image is None:
     raise sources.RecordingError(

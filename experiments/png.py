@@ -7,6 +7,7 @@ import zlib
 import numpy as np
 
 from waggle_tasks import errors
+from waggle_tasks.experiments import files
 
 _COLOURS = 256
 
@@ -45,10 +46,9 @@ def write(path: pathlib.Path, picture: np.ndarray) -> pathlib.Path:
   )
   try:
     path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_bytes(data)
+    return files.replace(path, data)
   except OSError as error:
     raise PngError(f'{path} cannot be written: {error.strerror}') from None
-  return path
 
 
 def _chunk(kind: bytes, data: bytes) -> bytes:

@@ -1,6 +1,6 @@
 """What produced a result: versions, renderer, sources and the command."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 import dataclasses
 import datetime
 import functools
@@ -8,11 +8,12 @@ import hashlib
 import pathlib
 import platform
 import shlex
+import types
 from typing import TYPE_CHECKING
 
 import waggle_tasks
 from waggle_tasks import agents, arenas, entities, errors, experiments
-from waggle_tasks.experiments import dependencies
+from waggle_tasks.experiments import dependencies, source_files
 
 if TYPE_CHECKING:
   from dm_control import mjcf
@@ -33,17 +34,22 @@ def source_hashes() -> dict[str, str]:
   return out
 
 
-def check_unchanged(hashes: dict[str, str], what: str) -> None:
+def check_unchanged(
+  hashes: Mapping[str, str],
+  what: str,
+  foreign: Mapping[str, pathlib.Path] = types.MappingProxyType({}),
+) -> None:
   """Refuses results when the sources are not those that they began with.
 
   Args:
-    hashes: `source_hashes` as they were.
+    hashes: `source_hashes`, and those of `foreign`, as they were.
     what: What ran, for people.
+    foreign: What else was used, see `outside.paths`.
 
   Raises:
     SourceError: if they changed.
   """
-  if source_hashes() != hashes:
+  if source_hashes() | source_files.hashes(foreign) != hashes:
     raise SourceError(
       f'sources must not change while a {what} runs: run it again, cases of'
       ' other sources are run anew'
@@ -92,7 +98,7 @@ class Provenance:
     renderer: The GL renderer.
     versions: See `versions`.
     source_digest: See `source_digest`.
-    sources: See `source_hashes`.
+    sources: See `source_hashes`; and code from outside of the project.
     began: When, in UTC.
     ended: When, in UTC.
   """
@@ -107,10 +113,21 @@ class Provenance:
 
   @classmethod
   def of(
-    cls, command: str, renderer: str, began: datetime.datetime
+    cls,
+    command: str,
+    renderer: str,
+    began: datetime.datetime,
+    foreign: Mapping[str, pathlib.Path] = types.MappingProxyType({}),
   ) -> 'Provenance':
-    """The provenance of what has just ended."""
-    hashes = source_hashes()
+    """The provenance of what has just ended.
+
+    Args:
+      command: See above.
+      renderer: See above.
+      began: See above.
+      foreign: Code from outside that was used, see `outside.paths`.
+    """
+    hashes = source_hashes() | source_files.hashes(foreign)
     ended = datetime.datetime.now(datetime.UTC)
     return cls(
       command, renderer, versions(), source_digest(hashes), hashes,

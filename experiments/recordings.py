@@ -12,6 +12,7 @@ import cv2
 import numpy as np
 
 from waggle_tasks.experiments import (
+  files,
   opencv_film,
   picture_folder,
   recording_part,
@@ -52,7 +53,7 @@ class Recording:
     """
     if fps is not None:
       checks.number('fps', fps, 0.01, 1000.0, RecordingError)
-    _check_name(path)
+    files.check_text(str(path.absolute()), RecordingError)
     self._path = path
     self._source = _open(path, fps)
     self.width, self.height = self._source.width, self._source.height
@@ -177,16 +178,6 @@ def _open(path: pathlib.Path, fps: float | None) -> sources.Source:
   except ImportError:
     return opencv_film.Film(path, fps)
   return pyav_film.Film(path, fps)
-
-
-def _check_name(path: pathlib.Path) -> None:
-  """Refuses a name that the libraries that open files cannot be told."""
-  try:
-    str(path).encode()
-  except UnicodeEncodeError:
-    raise RecordingError(
-      f'the name of a recording must be UTF-8: got {str(path)!a}'
-    ) from None
 
 
 def _check_file(path: pathlib.Path) -> None:

@@ -5,6 +5,7 @@ import contextlib
 import dataclasses
 import enum
 import hashlib
+import itertools
 import json
 import os
 import pathlib
@@ -13,7 +14,15 @@ import shutil
 import numpy as np
 
 from waggle_tasks import errors, scenario
-from waggle_tasks.experiments import archive, evaluator, provenance
+from waggle_tasks.agents import receivers
+from waggle_tasks.experiments import (
+  archive,
+  evaluator,
+  files,
+  outside,
+  provenance,
+  source_files,
+)
 from waggle_tasks.experiments import rollout as rollout_lib
 from waggle_tasks.experiments import traces as traces_lib
 from waggle_tasks.experiments.pages import run_page
@@ -22,6 +31,10 @@ from waggle_tasks.protocol import payload
 
 class OutputError(errors.WaggleError):
   """A folder that exists already or cannot be written."""
+
+
+class TakenError(OutputError):
+  """A name that exists, or that somebody else is about to write."""
 
 
 def to_json(value: object) -> object:
@@ -37,13 +50,27 @@ def to_json(value: object) -> object:
       return {str(key): to_json(each) for key, each in value.items()}
     case list() | tuple():
       return [to_json(each) for each in value]
+    case None | str() | bool() | int() | float():
+      return value
+    case set() | frozenset():
+      return sorted((to_json(each) for each in value), key=repr)
+    case pathlib.PurePath():
+      return str(value)
+    case bytes():
+      return value.hex()
+    case type():
+      return value.__qualname__
   if dataclasses.is_dataclass(value):
     fields = {
       field.name: to_json(getattr(value, field.name))
       for field in dataclasses.fields(value)
     }
     return fields
-  return value
+  # Of one's own, such as a layout that is a plain class.
+  return {
+    'type': getattr(value, '__qualname__', type(value).__qualname__),
+    **to_json(getattr(value, '__dict__', {})),
+  }
 
 
 def config(scene: scenario.Scenario, receiver_name: str) -> dict[str, object]:
@@ -59,15 +86,27 @@ def identity(
 ) -> str:
   """A SHA-256 of all that decides the result of an episode.
 
+  Code from outside of this project counts with its sources, and with what it
+  makes: where vehicles stand, what is flown, the numbers of the receiver.
+
   Args:
     scene: The scenario.
     receiver_name: The receiver.
     source_digest: Of this project's sources, see `provenance`.
+
+  Raises:
+    UnknownSourceError: if code from outside has no source.
   """
+  _, numbers = receivers.configured(receiver_name)
   parts = {
     'config': config(scene, receiver_name),
     'sources': source_digest,
     'versions': provenance.versions(),
+    'outside': source_files.hashes(outside.paths(receiver_name, [scene])),
+    'poses': scene.poses(),
+    'dance': scene.schedule,
+    'episode_s': scene.episode_s,
+    'numbers': numbers,
   }
   text = json.dumps(to_json(parts), sort_keys=True)
   return hashlib.sha256(text.encode()).hexdigest()
@@ -100,6 +139,9 @@ def dumps(value: object) -> str:
 def new_folder(path: pathlib.Path) -> Iterator[pathlib.Path]:
   """A folder that appears under its name only once it is complete.
 
+  Its name is claimed before the work: of two who ask for it at once, one gets
+  it, and the other is refused.
+
   Args:
     path: Where it should be; its parents are made.
 
@@ -108,22 +150,86 @@ def new_folder(path: pathlib.Path) -> Iterator[pathlib.Path]:
     ends, and removed when the block raises.
 
   Raises:
-    OutputError: if `path` exists or cannot be written.
+    OutputError: if `path` exists, is being written or cannot be written.
   """
   check_free(path)
-  draft = path.with_name(f'.{path.name}.{os.getpid()}.draft')
+  draft = files.draft_of(path)
   made = [parent for parent in draft.parents if not parent.exists()]
   try:
-    draft.mkdir(parents=True)
-    yield draft
-    os.rename(draft, path)
+    with files.claimed(path):
+      check_free(path)
+      shutil.rmtree(draft, ignore_errors=True)  # Of one that was killed.
+      try:
+        draft.mkdir()
+        yield draft
+        os.rename(draft, path)
+      finally:
+        shutil.rmtree(draft, ignore_errors=True)
+  except files.ClaimedError:
+    raise TakenError(
+      f'`output` must not be in use: another run is writing {path}'
+    ) from None
+  except BrokenPipeError:  # Of who read what was printed.
+    raise
   except OSError as error:
     raise _refused(path, error) from None
   finally:
-    shutil.rmtree(draft, ignore_errors=True)
     for parent in made:  # The innermost first; those in use stay.
       with contextlib.suppress(OSError):
         parent.rmdir()
+
+
+@contextlib.contextmanager
+def next_folder(stem: str) -> Iterator[tuple[pathlib.Path, pathlib.Path]]:
+  """The first of runs/STEM-1, runs/STEM-2, ... that nobody has or claims.
+
+  Args:
+    stem: How it begins.
+
+  Yields:
+    Its draft, as `new_folder` does, and the folder.
+
+  Raises:
+    OutputError: if it cannot be written.
+  """
+  with contextlib.ExitStack() as stack:
+    for number in itertools.count(1):
+      path = pathlib.Path('runs', f'{stem}-{number}')
+      with contextlib.suppress(TakenError):
+        draft = stack.enter_context(new_folder(path))
+        break
+    yield draft, path
+
+
+@contextlib.contextmanager
+def claimed(path: pathlib.Path, field: str) -> Iterator[None]:
+  """Keeps the name of a new file until it is written.
+
+  Args:
+    path: The file.
+    field: The flag that names it.
+
+  Raises:
+    OutputError: if it exists, its folder does not, or somebody writes it.
+  """
+  with contextlib.ExitStack() as stack:
+    try:
+      if path.absolute().parent.is_dir():
+        stack.enter_context(files.claimed(path))
+    except files.ClaimedError:
+      raise TakenError(
+        f'`{field}` must not be in use: another run is writing {path}'
+      ) from None
+    except OSError as error:
+      raise OutputError(
+        f'`{field}` must be writable: {path}: {error.strerror}'
+      ) from None
+    if os.path.lexists(path) or not path.absolute().parent.is_dir():
+      raise OutputError(
+        f'`{field}` must be a new file in a folder that exists: got'
+        f' {str(path)!r}'
+      )
+    yield
 
 
 def check_free(path: pathlib.Path) -> None:
@@ -132,19 +238,23 @@ def check_free(path: pathlib.Path) -> None:
   Raises:
     OutputError: naming the folder and the reason.
   """
+  if path.name in ('', '..'):
+    raise OutputError(f'`output` must end in a name: got {path}')
   if os.path.lexists(path):
-    raise OutputError(f'`output` must not exist yet: {path} does')
-  parent = next(p for p in path.absolute().parents if os.path.lexists(p))
-  if not parent.is_dir() or not os.access(parent, os.W_OK | os.X_OK):
-    raise OutputError(f'`output` must be writable: {parent} is not')
+    raise TakenError(f'`output` must not exist yet: {path} does')
+  check_writable(path)
 
 
-def free_folder(stem: str) -> pathlib.Path:
-  """The first of runs/STEM-1, runs/STEM-2, ... that does not exist."""
-  number = 1
-  while os.path.lexists(path := pathlib.Path('runs', f'{stem}-{number}')):
-    number += 1
-  return path
+def check_writable(folder: pathlib.Path) -> None:
+  """Refuses a folder that cannot be written, or made, before work.
+
+  Raises:
+    OutputError: naming the folder that is in the way.
+  """
+  there = [folder.absolute(), *folder.absolute().parents]
+  first = next(path for path in there if os.path.lexists(path))
+  if not first.is_dir() or not os.access(first, os.W_OK | os.X_OK):
+    raise OutputError(f'`output` must be writable: {first} is not')
 
 
 def write_run(

@@ -1,12 +1,12 @@
-"""A folder of results: one writer at a time, and files whole or not at all."""
+"""A folder of results: one writer at a time."""
 
 from collections.abc import Collection, Iterator
 import contextlib
 import fcntl
-import os
+import itertools
 import pathlib
 
-from waggle_tasks.experiments import records
+from waggle_tasks.experiments import files, records
 
 _LOCK = '.lock'
 
@@ -19,7 +19,7 @@ def locked(
 
   Args:
     folder: Where results are kept.
-    names: What it may hold; drafts of these too.
+    names: What it may hold, and what is left where one was half written.
     what: Whose results, for people.
 
   Raises:
@@ -28,7 +28,8 @@ def locked(
   """
   try:
     folder.mkdir(parents=True, exist_ok=True)
-    known = {_LOCK, *names, *map(_draft_name, names)}
+    rest = itertools.chain.from_iterable(map(files.leftovers, names))
+    known = {_LOCK, *names, *rest}
     strange = {p.name for p in folder.iterdir()} - known
     if strange:
       raise records.OutputError(
@@ -42,18 +43,9 @@ def locked(
     raise records.OutputError(
       f'`output` must not be in use: another run is writing {folder}'
     ) from None
+  except BrokenPipeError:  # Of who read what was printed.
+    raise
   except OSError as error:
     raise records.OutputError(
       f'`output` must be writable: {folder}: {error.strerror}'
     ) from None
-
-
-def replace(path: pathlib.Path, text: str) -> None:
-  """Writes a file, or puts a new one in its place, as a whole."""
-  draft = path.with_name(_draft_name(path.name))
-  draft.write_text(text, encoding='utf-8')
-  os.replace(draft, path)
-
-
-def _draft_name(name: str) -> str:
-  return f'.{name}.draft'

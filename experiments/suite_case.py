@@ -10,7 +10,9 @@ import shutil
 from waggle_tasks import suites
 from waggle_tasks.experiments import (
   evaluator,
+  files,
   job_progress,
+  outside,
   provenance,
   records,
 )
@@ -26,7 +28,7 @@ def fly(
   identity_: str,
   command: str,
   draft: pathlib.Path,
-) -> None:
+) -> str | None:
   """Runs a case and leaves its sealed run folder; called in a worker.
 
   Args:
@@ -36,25 +38,42 @@ def fly(
     identity_: Its identity.
     command: The shell line that runs it again.
     draft: The folder to leave; replaced when it exists.
+
+  Returns:
+    Why it could not be written, which another try would not change; None when
+    it was.
   """
-  shutil.rmtree(draft, ignore_errors=True)
-  draft.mkdir(parents=True)
   began = datetime.datetime.now(datetime.UTC)
   watchers = [job_progress.reporter(report)]
-  rollout = rollout_lib.run(case.scene, receiver_name, watchers)
-  verdict = evaluator.evaluate(case.scene, rollout)
-  origin = provenance.Provenance.of(command, rollout.renderer, began)
-  records.write_run(draft, case.scene, receiver_name, rollout, verdict, origin)
-  files = {path.name: _sha(path) for path in sorted(draft.iterdir())}
-  seal = {'case': case.name, 'identity': identity_, 'files': files}
-  (draft / SEAL).write_text(records.pretty(seal), encoding='utf-8')
+  try:
+    shutil.rmtree(draft, ignore_errors=True)
+    draft.mkdir(parents=True)
+    rollout = rollout_lib.run(case.scene, receiver_name, watchers)
+    verdict = evaluator.evaluate(case.scene, rollout)
+    origin = provenance.Provenance.of(
+      command, rollout.renderer, began,
+      outside.paths(receiver_name, [case.scene]),
+    )  # fmt: skip
+    records.write_run(
+      draft, case.scene, receiver_name, rollout, verdict, origin
+    )
+    sums = {path.name: _sha(path) for path in sorted(draft.iterdir())}
+    seal = {'case': case.name, 'identity': identity_, 'files': sums}
+    (draft / SEAL).write_text(records.pretty(seal), encoding='utf-8')
+  except OSError as error:
+    said = files.problem(error)
+    if said is None:
+      raise
+    shutil.rmtree(draft, ignore_errors=True)  # Room for what is under way.
+    return said
+  return None
 
 
 def flaw(folder: pathlib.Path, identity_: str) -> str | None:
   """Why the results in a folder cannot be used, or None when they can."""
   try:
     seal = json.loads((folder / SEAL).read_text(encoding='utf-8'))
-    known, files = seal['identity'], dict(seal['files'])
+    known, sums = seal['identity'], dict(seal['files'])
     found = {
       path.name: _sha(path) for path in folder.iterdir() if path.name != SEAL
     }
@@ -64,8 +83,8 @@ def flaw(folder: pathlib.Path, identity_: str) -> str | None:
     return f'damaged: {type(error).__name__}'
   if known != identity_:
     return 'from another configuration, other sources or other versions'
-  for name in sorted(files.keys() | found.keys()):
-    if files.get(name) != found.get(name):
+  for name in sorted(sums.keys() | found.keys()):
+    if sums.get(name) != found.get(name):
       return f'{name} is not what was written'
   return None
 

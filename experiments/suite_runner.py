@@ -1,6 +1,7 @@
 """Runs the cases of a suite into a folder, and goes on where it was ended."""
 
 from collections.abc import Sequence
+import contextlib
 import csv
 import io
 import os
@@ -9,11 +10,14 @@ import shutil
 
 from waggle_tasks import suites
 from waggle_tasks.experiments import (
+  files,
   job_progress,
+  outside,
   pool,
   provenance,
   records,
   result_folder,
+  source_files,
   suite_case,
 )
 from waggle_tasks.protocol import timing
@@ -45,12 +49,16 @@ def run(
     The rows of results.jsonl, in the order of `cases`.
 
   Raises:
-    OutputError: if the folder cannot be used.
+    OutputError: if the folder cannot be used, or a case not be recorded; then
+      those that were are kept.
     WorkerError: if a case failed again and again.
-    SourceError: if this project's sources changed meanwhile.
+    SourceError: if sources changed meanwhile.
+    UnknownSourceError: if code from outside has none.
   """
-  sources = provenance.source_hashes()
-  digest = provenance.source_digest(sources)
+  foreign = outside.paths(receiver_name, (case.scene for case in cases))
+  own = provenance.source_hashes()
+  sources = own | source_files.hashes(foreign)
+  digest = provenance.source_digest(own)
   identities = {
     case.name: records.identity(case.scene, receiver_name, digest)
     for case in cases
@@ -69,15 +77,17 @@ def run(
       )
       for case in sorted(missing, key=_size, reverse=True)
     ]  # fmt: skip
-    _fly(jobs, folder, workers)
-    shutil.rmtree(folder / _DRAFTS, ignore_errors=True)
-    provenance.check_unchanged(sources, 'suite')
+    try:
+      _fly(jobs, folder, workers)
+    finally:
+      shutil.rmtree(folder / _DRAFTS, ignore_errors=True)
+    provenance.check_unchanged(sources, 'suite', foreign)
     rows = [suite_case.row(c, folder / _CASES / c.name) for c in cases]
-    result_folder.replace(
+    files.replace(
       folder / 'results.jsonl',
       ''.join(f'{records.dumps(row)}\n' for row in rows),
     )
-    result_folder.replace(folder / 'results.csv', _csv(rows))
+    files.replace(folder / 'results.csv', _csv(rows))
   return rows
 
 
@@ -110,12 +120,18 @@ def _fly(jobs: Sequence[pool.Job], folder: pathlib.Path, workers: int) -> None:
   lengths = {
     job.name: timing.frames(job.arguments[0].scene.episode_s) for job in jobs
   }
-  news = pool.run(jobs, workers)
-  for done in job_progress.shown(
-    news, lengths, lambda _, active: ', '.join(active)
-  ):
-    name = done.job.name
-    os.replace(folder / _DRAFTS / name, folder / _CASES / name)
+  # Closed here, whatever happens: no worker writes after that.
+  with contextlib.closing(pool.run(jobs, workers)) as news:
+    for done in job_progress.shown(
+      news, lengths, lambda _, active: ', '.join(active)
+    ):
+      name = done.job.name
+      if done.value is not None:
+        raise records.OutputError(
+          f'`output` must be writable: {name} could not be recorded:'
+          f' {done.value}; cases that were are kept'
+        )
+      os.replace(folder / _DRAFTS / name, folder / _CASES / name)
 
 
 def _csv(rows: Sequence[dict[str, object]]) -> str:

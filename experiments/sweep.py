@@ -25,6 +25,7 @@ from waggle_tasks.experiments import (
   nulls,
   pool,
   provenance,
+  records,
   scenario_flags,
   sweep_cases,
   sweep_output,
@@ -103,6 +104,7 @@ def _summary(folders: Sequence[str]) -> int:
     row for name in folders for row in sweep_runner.read(pathlib.Path(name))
   ]
   if _OUTPUT.value is not None:
+    records.check_writable(pathlib.Path(_OUTPUT.value))
     return _show(pathlib.Path(_OUTPUT.value), rows)
   if len(folders) == 1:
     return _show(pathlib.Path(folders[0]), rows)

@@ -7,7 +7,7 @@ from waggle_tasks.experiments import (
   archive,
   envelope,
   figures,
-  result_folder,
+  files,
   sweep_runner,
   sweep_tables,
 )
@@ -26,7 +26,7 @@ def write(folder: pathlib.Path, rows: Sequence[envelope.Row]) -> pathlib.Path:
   """
   folder.mkdir(parents=True, exist_ok=True)
   text = sweep_tables.report(rows, None)
-  result_folder.replace(folder / sweep_runner.SUMMARY, f'{text}\n')
+  files.replace(folder / sweep_runner.SUMMARY, f'{text}\n')
   origin = folder / sweep_runner.PROVENANCE
   known = archive.read_json(origin) if origin.exists() else None
   if figures.can_draw():

@@ -10,13 +10,16 @@ import pathlib
 from waggle_tasks.experiments import (
   archive,
   figures,
+  files,
   job_progress,
   journal,
+  outside,
   pool,
   provenance,
   records,
   replay_flight,
   result_folder,
+  source_files,
   sweep_cases,
   sweep_flight,
 )
@@ -65,11 +68,14 @@ def run(
   Raises:
     OutputError: if the folder cannot be used.
     WorkerError: if a case failed again and again.
-    SourceError: if this project's sources changed meanwhile.
+    SourceError: if sources changed meanwhile.
+    UnknownSourceError: if code from outside has none.
   """
   began = datetime.datetime.now(datetime.UTC)
-  sources = provenance.source_hashes()
-  digest = provenance.source_digest(sources)
+  foreign = outside.paths(receiver_name, (case.scene for case in cases))
+  own = provenance.source_hashes()
+  sources = own | source_files.hashes(foreign)
+  digest = provenance.source_digest(own)
   identities = [
     records.identity(case.scene, receiver_name, digest)
     + (f' {replays} replays' if replays else '')
@@ -92,19 +98,19 @@ def run(
         log.append(row)
         known[row['identity']] = row
         if number % _CHECK_CASES == 0:
-          provenance.check_unchanged(sources, 'sweep')
-    provenance.check_unchanged(sources, 'sweep')
+          provenance.check_unchanged(sources, 'sweep', foreign)
+    provenance.check_unchanged(sources, 'sweep', foreign)
     rows = [
       {**known[identity], **sweep_flight.head(case)}
       for case, identity in zip(cases, identities, strict=True)
     ]
     lines = ''.join(f'{records.dumps(row)}\n' for row in rows)
-    result_folder.replace(folder / RESULTS, lines)
-    result_folder.replace(folder / TABLE, _csv(rows))
+    files.replace(folder / RESULTS, lines)
+    files.replace(folder / TABLE, _csv(rows))
     if jobs or not (folder / PROVENANCE).exists():
       renderers = ', '.join(sorted({row['renderer'] for row in rows}))
-      origin = provenance.Provenance.of(command, renderers, began)
-      result_folder.replace(folder / PROVENANCE, records.pretty(origin))
+      origin = provenance.Provenance.of(command, renderers, began, foreign)
+      files.replace(folder / PROVENANCE, records.pretty(origin))
   return rows
 
 

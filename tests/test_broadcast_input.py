@@ -161,8 +161,44 @@ def test_a_machine_that_cannot_render_is_told_so_and_nothing_is_left(
   assert [*tmp_path.iterdir()] == []
 
 
+BRIEF = ('--control=no_send', '--observers=1', '--duration_s=2')
+
+
 @pytest.mark.parametrize(
-  ('number', 'status'), [(signal.SIGINT, 130), (signal.SIGTERM, None)]
+  ('output', 'statuses', 'left'),
+  [
+    ((), [0, 0], ['broadcast-1', 'broadcast-2']),
+    (('--output=runs/mine',), [0, 2], ['mine']),
+  ],
+)
+def test_two_at_once_never_fly_for_the_same_folder(
+  output: tuple[str, ...],
+  statuses: list[int],
+  left: list[str],
+  tmp_path: pathlib.Path,
+) -> None:
+  children = [
+    subprocess.Popen(
+      [*COMMAND, *BRIEF, f'--seed={seed}', *output],
+      stdout=subprocess.DEVNULL,
+      stderr=subprocess.PIPE,
+      text=True,
+      cwd=tmp_path,
+    )
+    for seed in range(2)
+  ]
+  said = [child.communicate(timeout=120)[1] for child in children]
+  assert sorted(child.returncode for child in children) == statuses, said
+  assert sorted(p.name for p in (tmp_path / 'runs').iterdir()) == left
+  for child, err in zip(children, said, strict=True):
+    if child.returncode == 2:
+      (line,) = err.splitlines()  # No bar: it did not fly.
+      assert line.startswith('waggle broadcast: `output` must not ')
+
+
+@pytest.mark.parametrize(
+  ('number', 'status'),
+  [(signal.SIGINT, 130), (signal.SIGTERM, None), (signal.SIGHUP, None)],
 )
 def test_an_interrupted_run_leaves_no_half_written_file(
   number: signal.Signals, status: int | None, tmp_path: pathlib.Path

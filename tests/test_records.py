@@ -1,9 +1,14 @@
 """What a run leaves behind: all of it, or nothing."""
 
+import contextlib
 import json
 import math
 import os
 import pathlib
+import re
+import signal
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -11,7 +16,7 @@ import pytest
 from waggle_tasks import scenario
 from waggle_tasks.agents import observer_agent, receiver, recogniser
 from waggle_tasks.arenas import layouts
-from waggle_tasks.experiments import records
+from waggle_tasks.experiments import files, records
 from waggle_tasks.experiments import rollout as rollout_lib
 from waggle_tasks.protocol import frame, payload
 from waggle_tasks.protocol.symbols import Symbol
@@ -132,15 +137,91 @@ def test_two_runs_beside_each_other_do_not_meet(
   assert left_in(tmp_path) == ['a', 'a/a.txt', 'b', 'b/b.txt']
 
 
+def test_a_run_that_was_killed_does_not_block_its_name(
+  tmp_path: pathlib.Path,
+) -> None:
+  path = tmp_path / 'run'
+  work = f"""
+import os, pathlib
+from waggle_tasks.experiments import files, records
+with records.new_folder(pathlib.Path({str(path)!r})) as draft:
+  (draft / 'half.txt').write_text('ha')
+  os.kill(os.getpid(), 9)
+"""
+  child = subprocess.run([sys.executable, '-c', work], check=False)
+  assert child.returncode == -signal.SIGKILL
+  assert len(left_in(tmp_path)) == 3
+  with records.new_folder(path) as draft:
+    (draft / 'whole.txt').write_text('whole')
+  assert left_in(tmp_path) == ['run', 'run/whole.txt']
+
+
+def test_a_name_that_another_run_is_writing_is_refused_before_the_work(
+  tmp_path: pathlib.Path,
+) -> None:
+  path = tmp_path / 'run'
+  error = f'`output` must not be in use: another run is writing {path}'
+
+  def second() -> None:
+    with records.new_folder(path):
+      raise AssertionError('the work must not begin')
+
+  with records.new_folder(path) as draft:
+    with pytest.raises(records.OutputError, match=re.escape(error)):
+      second()
+    (draft / 'mine.txt').write_text('mine')
+  assert left_in(tmp_path) == ['run', 'run/mine.txt']
+
+
 def test_the_next_free_folder_is_counted(
   tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
   monkeypatch.chdir(tmp_path)
-  assert records.free_folder('broadcast') == pathlib.Path('runs/broadcast-1')
-  (tmp_path / 'runs' / 'broadcast-1').mkdir(parents=True)
-  (tmp_path / 'runs' / 'broadcast-2').touch()
-  assert records.free_folder('broadcast') == pathlib.Path('runs/broadcast-3')
-  assert records.free_folder('suite') == pathlib.Path('runs/suite-1')
+  for number in (1, 3, 4):
+    with records.next_folder('broadcast') as (draft, path):
+      (draft / 'a.txt').write_text('a')
+    assert path == pathlib.Path('runs', f'broadcast-{number}')
+    (tmp_path / 'runs' / 'broadcast-2').touch()
+  with records.next_folder('suite') as (_, path):
+    assert path == pathlib.Path('runs/suite-1')
+
+
+def test_runs_that_begin_together_get_folders_of_their_own(
+  tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+  monkeypatch.chdir(tmp_path)
+  with contextlib.ExitStack() as stack:
+    begun = [
+      stack.enter_context(records.next_folder('broadcast')) for _ in range(4)
+    ]
+    for number, (draft, path) in enumerate(begun, 1):
+      assert path == pathlib.Path('runs', f'broadcast-{number}')
+      (draft / f'{number}.txt').touch()
+  found = [name for name in left_in(tmp_path / 'runs') if '/' in name]
+  assert found == [f'broadcast-{n}/{n}.txt' for n in range(1, 5)]
+
+
+def test_an_interrupted_run_leaves_the_next_number_free(
+  tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+  monkeypatch.chdir(tmp_path)
+
+  def work() -> None:
+    with records.next_folder('broadcast'):
+      raise KeyboardInterrupt
+
+  with pytest.raises(KeyboardInterrupt):
+    work()
+  assert left_in(tmp_path) == []
+
+
+@pytest.mark.parametrize('path', ['new/..', '..', '/'])
+def test_what_is_no_name_is_refused_before_the_work(path: str) -> None:
+  with (
+    pytest.raises(records.OutputError, match='`output` must end in a name'),
+    records.new_folder(pathlib.Path(path)),
+  ):
+    raise AssertionError('the work must not begin')
 
 
 FORWARD = payload.Payload.from_bits('000010')
@@ -230,3 +311,21 @@ def test_a_layout_of_ones_own_is_written_with_its_name() -> None:
   scene = scenario.Scenario(layout=layouts.Line(1.5, 0.7))
   held = records.config(scene, 'klt')['scenario']['layout']
   assert held == {'Line': {'separation_m': 1.5, 'spacing_m': 0.7}}
+
+
+def test_the_name_of_a_file_is_kept_until_it_is_written(
+  tmp_path: pathlib.Path,
+) -> None:
+  path = tmp_path / 'all.json'
+
+  def second() -> None:
+    with records.claimed(path, 'json'):
+      raise AssertionError('the work must not begin')
+
+  with records.claimed(path, 'json'):
+    with pytest.raises(records.OutputError, match='`json` must not be in use'):
+      second()
+    files.put(path, '{}')
+  with pytest.raises(records.OutputError, match='`json` must be a new file'):
+    second()
+  assert left_in(tmp_path) == ['all.json']

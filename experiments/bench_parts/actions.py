@@ -111,14 +111,6 @@ def check_events(suite: str | None) -> Outcome:
   """
   default = suites.Case('broadcast', 'own', '', registry.find('broadcast'))
   cases = (default,) if suite is None else suites.find(suite)
-  workers, verdicts = len(processes.cores()), []
-  total_s = sum(2 * case.scene.episode_s for case in cases)
-  form = '{desc}|{bar}| {n:.0f}/{total:.0f} s simulated [{elapsed}]'
-  with tqdm.tqdm(total=total_s, desc='events ', bar_format=form) as bar:
-    for news in events.compare(cases, workers):
-      if isinstance(news, events.Verdict):
-        verdicts.append(news)
-      else:
-        bar.update(news)
+  verdicts = [*events.compare(cases, len(processes.cores()))]
   same = all(each.difference is None for each in verdicts)
   return Outcome(findings.event_logs(verdicts), {'events': verdicts}, same)

@@ -4,13 +4,10 @@ from collections.abc import Callable, Iterator, Sequence
 import dataclasses
 
 import cv2
-from dm_control import composer
-import dm_env
 
 from waggle_tasks import suites
-from waggle_tasks.agents import observer_agent
 from waggle_tasks.entities import observer
-from waggle_tasks.experiments import pool, records, rollout
+from waggle_tasks.experiments import job_progress, pool, records, rollout
 from waggle_tasks.experiments.bench_parts import loops
 from waggle_tasks.protocol import timing
 
@@ -31,10 +28,8 @@ class Verdict:
   difference: tuple[str, str] | None
 
 
-def compare(
-  cases: Sequence[suites.Case], workers: int
-) -> Iterator[float | Verdict]:
-  """Runs cases with either camera.
+def compare(cases: Sequence[suites.Case], workers: int) -> Iterator[Verdict]:
+  """Runs cases with either camera, behind a bar of simulated seconds.
 
   The provenance of a message is part of its event: equal logs also mean that
   every picture before it was equal, bit for bit.
@@ -44,8 +39,7 @@ def compare(
     workers: How many processes.
 
   Yields:
-    Simulated seconds as they pass, and a verdict for each case when it is
-    over.
+    A verdict for each case when it is over.
   """
   jobs = [
     pool.Job(f'{case.name} {camera}', _fly, (case, camera))
@@ -53,13 +47,14 @@ def compare(
     for camera in observer.CAMERAS
   ]
   logs: dict[str, dict[str, list[str]]] = {case.name: {} for case in cases}
-  for news in pool.run(jobs, workers):
-    if isinstance(news, pool.Progress):
-      yield news.amount
-      continue
-    case, camera = news.job.arguments
+  frames = {
+    job.name: timing.frames(job.arguments[0].scene.episode_s) for job in jobs
+  }
+  news = pool.run(jobs, workers)
+  for done in job_progress.shown(news, frames, lambda *_: 'events'):
+    case, camera = done.job.arguments
     found = logs[case.name]
-    found[camera] = news.value
+    found[camera] = done.value
     if len(found) == len(observer.CAMERAS):
       one, other = (found[camera] for camera in observer.CAMERAS)
       yield Verdict(case.name, len(one), difference(one, other))
@@ -84,15 +79,6 @@ def _fly(
 ) -> list[str]:
   """The event log of a case; called in a worker."""
   cv2.setNumThreads(1)  # Workers share the cores.
-
-  def watch(
-    environment: composer.Environment,
-    timestep: dm_env.TimeStep,
-    team: observer_agent.Team,
-  ) -> None:
-    del environment, team
-    if not timestep.first():
-      report(timing.FRAME_S)
-
   scene = dataclasses.replace(case.scene, camera=camera)
-  return list(records.event_lines(rollout.run(scene, loops.RECEIVER, [watch])))
+  watchers = [job_progress.reporter(report)]
+  return list(records.event_lines(rollout.run(scene, loops.RECEIVER, watchers)))

@@ -3,9 +3,9 @@
 from collections.abc import Mapping, Sequence
 import functools
 import json
-import os
 import pathlib
 
+from waggle_tasks.experiments import files
 from waggle_tasks.experiments.pages import markup
 
 NAME = 'index.html'
@@ -54,7 +54,4 @@ def chip(good: bool, *words: markup.Content) -> markup.Markup:
 
 def save(folder: pathlib.Path, whole: markup.Markup) -> pathlib.Path:
   """Replaces a folder's page as a whole and returns its path."""
-  draft = folder / f'.{NAME}.draft'
-  draft.write_text(whole, encoding='utf-8')
-  os.replace(draft, folder / NAME)
-  return folder / NAME
+  return files.replace(folder / NAME, whole)

@@ -7,7 +7,7 @@ import cv2
 import numpy as np
 
 from waggle_tasks import errors
-from waggle_tasks.experiments import reader
+from waggle_tasks.experiments import files, reader
 from waggle_tasks.experiments.video import encoders, layout, moment, page
 from waggle_tasks.protocol.symbols import Symbol
 
@@ -36,12 +36,7 @@ class Film:
       VideoError: if the name chooses no codec, or is taken.
     """
     encoders.check_name(path.name)
-    try:
-      str(path).encode()
-    except UnicodeEncodeError:
-      raise layout.VideoError(
-        f'`annotate` must be a name in UTF-8: got {str(path)!a}'
-      ) from None
+    files.check_text(str(path.absolute()), layout.VideoError)
     if path.exists() or not path.parent.is_dir():
       raise layout.VideoError(
         f'`annotate` must be a new file in a folder that exists: got {path}'

@@ -10,7 +10,7 @@ from typing import Protocol
 import cv2
 import numpy as np
 
-from waggle_tasks.experiments import quiet
+from waggle_tasks.experiments import files, quiet
 from waggle_tasks.experiments.video import layout
 
 _QUEUE = 8  # Pictures that may wait: more would only fill the memory.
@@ -133,6 +133,7 @@ def make(path: pathlib.Path, size: tuple[int, int], fps: float) -> Encoder:
     VideoError: if the codec is refused or not installed.
   """
   check_name(path.name)
+  files.check_text(str(path.absolute()), layout.VideoError)
   return ENCODERS[path.suffix](path, size, fps)
 
 

@@ -57,6 +57,22 @@ def test_a_worker_killed_in_mid_case_leaves_no_trace_in_the_results(
   assert fresh.results() == reference.results()
 
 
+@pytest.mark.parametrize('number', [signal.SIGTERM, signal.SIGHUP])
+def test_a_suite_that_is_asked_to_end_leaves_no_drafts(
+  launched: Launched,
+  fresh: object,
+  session: Session,
+  wait_until: Callable[..., None],
+  number: signal.Signals,
+) -> None:
+  wait_until((fresh.folder / '.drafts' / 'dance').exists)
+  os.kill(launched.pid, number)
+  assert launched.wait(timeout=60) == 130
+  wait_until(lambda: not session(launched.pid), 15)
+  left = {path.name for path in fresh.folder.iterdir()}
+  assert left == {'.lock', 'cases'}
+
+
 def test_a_suite_killed_in_its_middle_ends_as_if_it_had_not_been(
   launched: Launched,
   fresh: object,
@@ -110,16 +126,24 @@ def file_limit(
   limit(None)
 
 
-def test_a_disk_full_in_a_case_leaves_no_result_and_the_next_run_ends_well(
+def test_a_disk_full_in_a_case_is_one_line_and_the_next_run_ends_well(
   fresh_blink: object,
   blink_reference: object,
   file_limit: Callable[[int | None], None],
+  monkeypatch: pytest.MonkeyPatch,
 ) -> None:
+  flown, started = [], pool._give
+  monkeypatch.setattr(
+    pool, '_give', lambda *given: (flown.append(given[1]), started(*given))
+  )
   file_limit(8192)  # Less than a provenance.json.
-  with pytest.raises(pool.WorkerError, match=r'(?s)^blink failed .*too large'):
+  error = r'^`output` must be writable: blink could not be .*too large; .*kept$'
+  with pytest.raises(records.OutputError, match=error):
     fresh_blink.run()
   file_limit(None)
+  assert len(flown) == 1  # Another flight would not make room.
   assert not [*(fresh_blink.folder / 'cases').iterdir()]
+  assert not (fresh_blink.folder / '.drafts').exists()
   assert not (fresh_blink.folder / 'results.jsonl').exists()
   fresh_blink.run()
   assert fresh_blink.results() == blink_reference.results()

@@ -1,0 +1,49 @@
+"""The bar of simulated seconds: it ends where it should, whatever is flown."""
+
+from collections.abc import Callable
+import pathlib
+import subprocess
+import warnings
+
+import pytest
+
+from waggle_tasks.experiments import job_progress, pool
+
+
+@pytest.mark.parametrize('frames', [1, 3, 249, 2690, 15_000])
+def test_a_bar_of_any_length_ends_full_and_without_a_warning(
+  frames: int, capsys: pytest.CaptureFixture[str]
+) -> None:
+  form = '{percentage:.0f} {bar} {n:.2f} of {total:.2f} s'
+  with warnings.catch_warnings():
+    warnings.simplefilter('error')
+    with job_progress.seconds_bar(frames, bar_format=form) as bar:
+      for _ in range(frames):
+        bar.update()
+  last = capsys.readouterr().err.splitlines()[-1]
+  assert last.startswith('100 ')
+  assert f'{frames / 25:.2f} of {frames / 25:.2f} s' in last
+
+
+def test_a_job_that_tells_more_than_its_frames_does_not_overrun(
+  capsys: pytest.CaptureFixture[str],
+) -> None:
+  job = pool.Job('one', print, ())
+  news = [pool.Progress(job, 40), pool.Progress(job, 60), pool.Done(job, 1)]
+  with warnings.catch_warnings():
+    warnings.simplefilter('error')
+    done = [*job_progress.shown(news, {'one': 50}, lambda *_: 'one')]
+  assert done == [pool.Done(job, 1)]
+  assert '2/2 s simulated' in capsys.readouterr().err.splitlines()[-1]
+
+
+def test_a_whole_flight_is_kept_where_warnings_are_errors(
+  waggle: Callable[..., subprocess.CompletedProcess[str]],
+  tmp_path: pathlib.Path,
+) -> None:
+  child = waggle(
+    'broadcast', '--control=no_send', '--observers=1', '--duration_s=4',
+    cwd=tmp_path, PYTHONWARNINGS='error',
+  )  # fmt: skip
+  assert (child.returncode, 'Warning' in child.stderr) == (0, False)
+  assert (tmp_path / 'runs' / 'broadcast-1' / 'result.json').exists()
