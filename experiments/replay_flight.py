@@ -55,7 +55,8 @@ def fly(
       )
       place = sweep_flight.place(poses[f'observer_{number}'])
       outcomes.append({**_exposure(outcome, spoiling, events), **place})
-      report(len(tape.times_s))
+      # All observers of one replay are as much as the flight.
+      report((1 + len(outcomes) / len(tapes)) * len(tape.times_s))
   whole = {
     **sweep_flight.head(case),
     'identity': identity,

@@ -94,7 +94,8 @@ def run(
     # A repeat of every cell before the next: the whole map is soon seen.
     jobs.sort(key=lambda job: job.arguments[0].repeat)
     with journal.opened(folder / JOURNAL) as log:
-      for number, row in enumerate(_fly(jobs, engine, len(cases))):
+      rows = _fly(jobs, engine, len(cases), 1 + replays)
+      for number, row in enumerate(rows):
         log.append(row)
         known[row['identity']] = row
         if number % _CHECK_CASES == 0:
@@ -138,11 +139,19 @@ def read(folder: pathlib.Path) -> list[dict[str, object]]:
 
 
 def _fly(
-  jobs: Sequence[pool.Job], engine: Engine, total: int
+  jobs: Sequence[pool.Job], engine: Engine, total: int, shows: int
 ) -> Iterator[dict[str, object]]:
-  """Runs jobs behind a progress bar and yields their rows."""
+  """Runs jobs behind a progress bar and yields their rows.
+
+  Args:
+    jobs: One for each case.
+    engine: What runs them.
+    total: How many cases there are, those that were flown before included.
+    shows: How often the images of each are seen, the flight included.
+  """
   frames = {
-    job.name: timing.frames(job.arguments[0].scene.episode_s) for job in jobs
+    job.name: shows * timing.frames(job.arguments[0].scene.episode_s)
+    for job in jobs
   }
   known = total - len(jobs)
 
