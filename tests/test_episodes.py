@@ -42,10 +42,10 @@ def check_all_flew(played: Played) -> None:
 @pytest.mark.parametrize(
   ('payload', 'observers', 'layout'),
   [
-    ('000110', 2, 'arc'),
+    ('000110', 1, 'arc'),
     ('001010', 2, 'line'),
-    ('100010', 1, 'arc'),
-    ('000010', 5, 'arc'),
+    pytest.param('100010', 2, 'arc', marks=pytest.mark.slow),
+    pytest.param('000010', 5, 'arc', marks=pytest.mark.slow),
   ],
 )
 def test_a_short_dance_is_read_and_flown(
@@ -129,14 +129,15 @@ def test_nothing_sent_is_one_null_and_nobody_moves() -> None:
 def test_who_sees_black_waits_and_the_others_fly(
   short: dict[str, object],
 ) -> None:
-  _, rollout, verdict = play('black_input', **short)
+  _, rollout, verdict = play(
+    'black_input', observers=2, black_observer=1, **short
+  )
   assert verdict.passed
   decoded = [each.decoded for each in verdict.outcomes]
-  assert decoded == ['000010', None, '000010']
-  assert rollout.events['observer_2'] == ()
-  assert moved_m(rollout, 'observer_2') < 1e-3
-  for name in ('observer_1', 'observer_3'):
-    assert moved_m(rollout, name) == pytest.approx(0.4, abs=0.015)
+  assert decoded == [None, '000010']
+  assert rollout.events['observer_1'] == ()
+  assert moved_m(rollout, 'observer_1') < 1e-3
+  assert moved_m(rollout, 'observer_2') == pytest.approx(0.4, abs=0.015)
 
 
 def check_nobody_moved(played: Played, duration_s: float) -> None:

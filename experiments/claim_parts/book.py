@@ -63,6 +63,10 @@ _DECOYS = {
   'control': 'circles,diagonals,random_walk,navigation,swapped,repeated,'
   'half_frame'
 }  # fmt: skip
+_FAST = (
+  '--half_width_m=0.12', '--start_height_m=0.25', '--gesture_s=2',
+  '--initial_hover_s=3.2', '--settle_s=0.6', '--gap_s=2', '--lead_in_s=1.8',
+)  # fmt: skip
 _BARE = 'separators=off,final_null=off'
 
 
@@ -83,6 +87,14 @@ def _sweep(
     *(f'--grid={name}={values}' for name, values in grid.items()),
   )  # fmt: skip
   return Claim(block, how, command, table)
+
+
+def _hidden(receiver: str) -> Claim:
+  return _sweep(
+    f'hidden-{receiver}', 1, '--replays=4', *_FAST, receiver=receiver,
+    observers=1, how=PART, control='seven_bits,begun_anew,run_together',
+    distance_m='1.3',
+  )  # fmt: skip
 
 
 def _disturbed(table: int, *flags: str, **grid: str) -> Claim:
@@ -163,8 +175,10 @@ CLAIMS = {
   ),
   # Of the receiver that it speaks of: the tables of others are left out.
   'together': Claim(
-    'together', SUM, detail='klt-map klt view_bank:max_repeated=1'
+    'together', SUM, detail='klt-map klt view_bank:max_stale_s=0'
   ),
+  'hidden-klt': _hidden('klt'),
+  'hidden-view_bank': _hidden('view_bank'),
   'frozen': _sweep(
     'living-cameras', 2, '--freeze_length_s=600', observers=3, table=1,
     freeze_s='94', noise_sigma='5',

@@ -18,9 +18,7 @@ kit = pytest.importorskip('recordings_kit', exc_type=ImportError)
 TELLING = {
   'h264-crf23.mp4': ('view_bank', 'klt'),
   'gif-10hz.gif': ('view_bank',),
-  'h264-59p94hz.mp4': ('view_bank', 'klt'),
-  'h264-1280x720-bars.mp4': ('view_bank',),
-  'h264-12p5hz.mp4': ('view_bank',),
+  'h264-60hz.mp4': ('klt',),
 }
 
 
