@@ -14,6 +14,7 @@ import subprocess
 import sys
 import time
 
+import cv2
 import dm_env
 import hypothesis
 import numpy as np
@@ -27,6 +28,10 @@ from waggle_tasks.protocol import (
   reference,
   timing,
 )
+
+# Tests run beside each other: threads of one would wait for those of others.
+cv2.setNumThreads(1)
+os.environ['OPENCV_FOR_THREADS_NUM'] = '1'  # Of commands that tests start.
 
 # A busy machine is slow, which is no failure.
 hypothesis.settings.register_profile('patient', deadline=None)
