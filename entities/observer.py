@@ -5,9 +5,7 @@ from dm_control.composer.observation import observable
 import numpy as np
 
 from waggle_tasks import sensor as sensor_lib
-from waggle_tasks.entities import crazyflie, eye, feed
-
-CAMERAS = ('incremental', 'full')
+from waggle_tasks.entities import crazyflie, eye, feed, optics
 
 
 class Observer(crazyflie.Crazyflie):
@@ -21,14 +19,14 @@ class Observer(crazyflie.Crazyflie):
     self,
     name: str = 'observer',
     camera: str = 'incremental',
-    eye_offset_m: float = eye.OFFSET_M,
+    eye_offset_m: float = optics.OFFSET_M,
     sensor: sensor_lib.Sensor = sensor_lib.Sensor(),
   ) -> None:
     """Builds the model.
 
     Args:
       name: Model name, the prefix of everything inside it.
-      camera: One of `CAMERAS`: how its images are rendered.
+      camera: One of `optics.CAMERAS`: how its images are rendered.
       eye_offset_m: How far the eye is ahead of the centre of mass.
       sensor: What spoils its images.
     """
@@ -36,7 +34,7 @@ class Observer(crazyflie.Crazyflie):
     self._incremental = camera == 'incremental'
     self._eye = self.airframe.add(
       'camera', name='eye', pos=(eye_offset_m, 0, 0),
-      xyaxes=(0, -1, 0, 0, 0, 1), fovy=eye.FOVY_DEG,
+      xyaxes=(0, -1, 0, 0, 0, 1), fovy=optics.FOVY_DEG,
     )  # fmt: skip
     self.sensor = sensor
     self._feed: feed.Feed | None = None

@@ -7,7 +7,7 @@ final confirmation (section 'Limitations and next simulation experiments').
 from collections.abc import Mapping, Sequence
 import dataclasses
 
-from waggle_tasks.experiments import evaluator, table, variant_runner
+from waggle_tasks.experiments import table, variant_runner, verdicts
 
 Row = Mapping[str, object]
 
@@ -73,7 +73,7 @@ class _Counts:
   @classmethod
   def of(cls, rows: Sequence[Row]) -> '_Counts':
     outcomes = [
-      evaluator.Outcome(**fields) for row in rows for fields in row['outcomes']
+      verdicts.Outcome(**fields) for row in rows for fields in row['outcomes']
     ]
     return cls(
       sum(row['correct'] for row in rows),

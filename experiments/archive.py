@@ -11,8 +11,7 @@ import numpy as np
 
 from waggle_tasks import errors
 from waggle_tasks.agents import observer_agent, receiver, recogniser
-from waggle_tasks.experiments import rollout as rollout_lib
-from waggle_tasks.experiments import story
+from waggle_tasks.experiments import episode, story
 from waggle_tasks.experiments import traces as traces_lib
 from waggle_tasks.protocol import agreement as agreement_lib
 from waggle_tasks.protocol import (
@@ -42,8 +41,8 @@ class Run:
     config: config.json.
     result: result.json.
     provenance: provenance.json.
-    events: By observer name, as in `rollout.Rollout`.
-    traces: By observer name, as in `rollout.Rollout`.
+    events: By observer name, as in `episode.Rollout`.
+    traces: By observer name, as in `episode.Rollout`.
     times_s: (T,) one time for each frame.
     positions_m: By vehicle name, (T, 3) true positions.
   """
@@ -52,7 +51,7 @@ class Run:
   config: dict
   result: dict
   provenance: dict
-  events: dict[str, tuple[rollout_lib.Event, ...]]
+  events: dict[str, tuple[episode.Event, ...]]
   traces: dict[str, traces_lib.Trace]
   times_s: np.ndarray
   positions_m: dict[str, np.ndarray]
@@ -151,7 +150,7 @@ def read_agreement(config: Mapping) -> agreement_lib.Agreement:
 
 def read_events(
   path: pathlib.Path, names: list[str]
-) -> dict[str, tuple[rollout_lib.Event, ...]]:
+) -> dict[str, tuple[episode.Event, ...]]:
   """Reads an event log.
 
   Args:
@@ -204,7 +203,7 @@ _MAKERS = {
 }
 
 
-def save_positions(path: pathlib.Path, rollout: rollout_lib.Rollout) -> None:
+def save_positions(path: pathlib.Path, rollout: episode.Rollout) -> None:
   """Writes every vehicle's way; equal ways give equal bytes."""
   np.savez_compressed(path, times_s=rollout.times_s, **rollout.positions_m)
 

@@ -20,7 +20,7 @@ from absl import flags
 
 from waggle_tasks import errors
 from waggle_tasks.agents import config
-from waggle_tasks.entities import eye
+from waggle_tasks.entities import optics
 from waggle_tasks.experiments import (
   archive,
   capture,
@@ -64,7 +64,7 @@ _FOVY_DEG = flags.DEFINE_float(
   'fovy_deg',
   None,
   'Vertical field of view of the whole picture, in degrees. Unset, and without'
-  f' --focal_px, {eye.FOVY_DEG:g}.',
+  f' --focal_px, {optics.FOVY_DEG:g}.',
 )
 _ANNOTATE = flags.DEFINE_string(
   'annotate', None, 'Video to write that shows what the receiver saw.'
@@ -183,7 +183,7 @@ def _focal_px(height: int) -> float:
   if _FOCAL_PX.value is not None:
     checks.number('focal_px', _FOCAL_PX.value, 1.0, 1e5, DecodeError)
     return _FOCAL_PX.value
-  fovy_deg = eye.FOVY_DEG if _FOVY_DEG.value is None else _FOVY_DEG.value
+  fovy_deg = optics.FOVY_DEG if _FOVY_DEG.value is None else _FOVY_DEG.value
   checks.number('fovy_deg', fovy_deg, 1.0, 170.0, DecodeError)
   return height / 2 / math.tan(math.radians(fovy_deg) / 2)
 

@@ -82,8 +82,9 @@ def _run(name: str, argv: list[str], check_versions: bool) -> int:
   except BrokenPipeError:  # Whoever reads what is printed has seen enough.
     raise
   except Exception as error:
-    # A failing GL stack raises anything, anywhere: ask whether it was that.
-    line, status = files.problem(error) or gl.problem(), BAD_INPUT
+    line, status = files.problem(error), BAD_INPUT
+    if line is None and gl.may_cause(error):
+      line = gl.problem()
     if line is None:
       raise
     # Contexts that were never made complain again when they are dropped.

@@ -16,6 +16,7 @@ from waggle_tasks.experiments import (
   spoilers,
   sweep_cases,
   sweep_flight,
+  verdicts,
 )
 from waggle_tasks.experiments import tape as tape_lib
 
@@ -33,7 +34,7 @@ def fly(
     report: Told now and then how many frames are done.
     case: The case.
     receiver_name: The receiver.
-    identity: See `records.identity`.
+    identity: See `identity.of`.
     replays: How many exposures each observer has.
 
   Returns:
@@ -50,7 +51,7 @@ def fly(
       spoiling = spoilers.draw(seed, scene.agreement, tape.times_s[-1])
       reader = receivers.make(receiver_name, scene.agreement)
       message, events = _read(reader, spoiling(tape.play()))
-      outcome = evaluator.Outcome(
+      outcome = verdicts.Outcome(
         f'observer_{number}, replay {replay}', expected, message
       )
       place = sweep_flight.place(poses[f'observer_{number}'])
@@ -83,7 +84,7 @@ def _read(
 
 
 def _exposure(
-  outcome: evaluator.Outcome, spoiling: spoilers.Spoiling, events: int
+  outcome: verdicts.Outcome, spoiling: spoilers.Spoiling, events: int
 ) -> dict[str, object]:
   right = outcome.decoded == outcome.expected
   said = outcome.decoded or 'nothing'

@@ -3,7 +3,7 @@
 from absl import flags
 
 from waggle_tasks import appearance, scenario
-from waggle_tasks.entities import observer
+from waggle_tasks.entities import optics
 from waggle_tasks.experiments import scenario_fields
 
 # Flags defined here belong to the launcher that asks for them.
@@ -68,7 +68,7 @@ _HELP = {
 _CHOICES = {
   'control': scenario.CONTROLS,
   'layout': scenario.LAYOUTS,
-  'camera': observer.CAMERAS,
+  'camera': optics.CAMERAS,
   'floor': appearance.FLOORS,
   'walls': appearance.WALLS,
   'sun': appearance.SUNS,

@@ -22,7 +22,6 @@ from waggle_tasks.experiments import (
   launch,
   nulls,
   provenance,
-  suite_runner,
   suite_tables,
 )
 from waggle_tasks.experiments.pages import suite_page
@@ -66,6 +65,9 @@ def main(argv: Sequence[str]) -> int:
   receivers.make(_RECEIVER.value)
   if note := nulls.check([c.scene for c in cases], _RECEIVER.value):
     print(note, file=sys.stderr)
+  # Imported here: to compare results, no simulator is needed.
+  from waggle_tasks.experiments import suite_runner
+
   workers = launch.worker_count(_WORKERS)
   stem = pathlib.Path(_SUITE.value).stem
   name = '-'.join([stem, _RECEIVER.value, *_CASE.value])

@@ -20,6 +20,7 @@ from waggle_tasks.experiments import (
   source_files,
   suite_case,
 )
+from waggle_tasks.experiments import identity as identity_lib
 from waggle_tasks.protocol import timing
 
 _CASES, _DRAFTS = 'cases', '.drafts'
@@ -60,7 +61,7 @@ def run(
   sources = own | source_files.hashes(foreign)
   digest = provenance.source_digest(own)
   identities = {
-    case.name: records.identity(case.scene, receiver_name, digest)
+    case.name: identity_lib.of(case.scene, receiver_name, digest)
     for case in cases
   }
   names = _CASES, _DRAFTS, *_TABLES

@@ -6,10 +6,12 @@ import math
 from waggle_tasks.agents import receiver
 from waggle_tasks.arenas import layouts
 from waggle_tasks.experiments import (
+  episode,
   evaluator,
   job_progress,
   records,
   sweep_cases,
+  verdicts,
 )
 from waggle_tasks.experiments import rollout as rollout_lib
 
@@ -26,7 +28,7 @@ def fly(
     report: Told now and then how many frames are done.
     case: The case.
     receiver_name: The receiver.
-    identity: See `records.identity`.
+    identity: See `identity.of`.
 
   Returns:
     The case's line of results.jsonl.
@@ -41,8 +43,8 @@ def row(
   case: sweep_cases.Case,
   receiver_name: str,
   identity: str,
-  rollout: rollout_lib.Rollout,
-  verdict: evaluator.Verdict,
+  rollout: episode.Rollout,
+  verdict: verdicts.Verdict,
 ) -> dict[str, object]:
   """A case's line of results.jsonl, from its episode."""
   poses = case.scene.poses()
@@ -71,7 +73,7 @@ def head(case: sweep_cases.Case) -> dict[str, object]:
 
 
 def _exposure(
-  outcome: evaluator.Outcome, pose: layouts.Pose
+  outcome: verdicts.Outcome, pose: layouts.Pose
 ) -> dict[str, object]:
   """What became of one observer, and where it stood."""
   stages = [failure.partition(':')[0] for failure in outcome.failures]
@@ -94,7 +96,7 @@ def place(pose: layouts.Pose) -> dict[str, object]:
   }
 
 
-def _reading(events: Sequence[rollout_lib.Event]) -> dict[str, object]:
+def _reading(events: Sequence[episode.Event]) -> dict[str, object]:
   """How much it saw, and from where it believes that it saw its message."""
   seen = [event for event in events if isinstance(event, receiver.Event)]
   message = next((event for event in seen if event.message), None)

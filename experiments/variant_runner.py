@@ -11,7 +11,7 @@ import pathlib
 from absl import flags
 
 from waggle_tasks import suites
-from waggle_tasks.experiments import launch, provenance, suite_runner
+from waggle_tasks.experiments import launch, provenance
 from waggle_tasks.protocol import checks
 
 # Flags defined here belong to the launcher that asks for them.
@@ -65,6 +65,9 @@ def run(command: str, variants: Mapping[str, Variant]) -> Results:
   Raises:
     WaggleError: if a flag names what does not exist, or the suite cannot run.
   """
+  # Imported here: help needs no simulator.
+  from waggle_tasks.experiments import suite_runner
+
   suite, wanted, names = (
     flags.FLAGS[name].value for name in ('suite', 'case', 'variant')
   )

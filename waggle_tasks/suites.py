@@ -9,7 +9,7 @@ import dataclasses
 import inspect
 import re
 
-from waggle_tasks import errors, registry
+from waggle_tasks import errors, scenarios
 from waggle_tasks import scenario as scenario_lib
 from waggle_tasks.protocol import checks
 
@@ -107,7 +107,7 @@ def _cases() -> dict[str, tuple[Case, ...]]:
         name.replace('.', '-'),
         group,
         label,
-        registry.find('broadcast', **changes),
+        scenarios.find('broadcast', **changes),
         Published(correct, passed),
       )
       for name, label, correct, passed, changes in table
@@ -119,7 +119,7 @@ def _cases() -> dict[str, tuple[Case, ...]]:
   }
   suites['controls'] = tuple(
     Case(
-      name, 'controls', label, registry.find(task), Published(correct, True)
+      name, 'controls', label, scenarios.find(task), Published(correct, True)
     )
     for name, label, correct, task in _CONTROLS
   )  # fmt: skip
@@ -144,7 +144,7 @@ def from_rows(rows: Sequence[Mapping[str, object]]) -> tuple[Case, ...]:
   """The cases of a user's own suite.
 
   Args:
-    rows: For each case a `name`, optionally a `task` of `registry.SCENARIOS`
+    rows: For each case a `name`, optionally a `task` of `scenarios.SCENARIOS`
       ('broadcast' by default), a `group` ('own') and a `label`, and any
       fields of `Scenario` that differ from the task's.
 
@@ -165,7 +165,7 @@ def from_rows(rows: Sequence[Mapping[str, object]]) -> tuple[Case, ...]:
     label = changes.pop('label', '')
     text = ', '.join(f'{key} = {value}' for key, value in changes.items())
     try:
-      scene = registry.find(task, **_parts(changes))
+      scene = scenarios.find(task, **_parts(changes))
       cases.append(Case(name, group, label or text or task, scene))
     except errors.WaggleError as error:
       raise SuiteError(f'case {number} ({name}): {error}') from None

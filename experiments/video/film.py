@@ -12,10 +12,8 @@ from waggle_tasks.experiments import changes, story
 from waggle_tasks.experiments.video import encoders, layout, lens, page
 from waggle_tasks.protocol import checks, timing
 
-COMPOSITE = 'composite'
 # Of a scenario, what its title or the pictures themselves say.
 _TOLD = ('control', 'payload', 'layout', 'distance_m', 'observers')
-FPS = 5.0  # Every fifth frame: cheap beside the run.
 
 
 class Film:
@@ -32,8 +30,8 @@ class Film:
     scene: scenario.Scenario,
     *,
     name: str | None = None,
-    view: str = COMPOSITE,
-    fps: float = FPS,
+    view: str = layout.COMPOSITE,
+    fps: float = layout.FPS,
     scale: float = 1.0,
     marks: bool = True,
   ) -> None:
@@ -55,12 +53,12 @@ class Film:
     name = name or f'{view}.webm'
     encoders.check_name(name)
     names = [f'observer_{k + 1}' for k in range(scene.observers)]
-    views = [COMPOSITE, *names, *layout.SHARED]
+    views = [layout.COMPOSITE, *names, *layout.SHARED]
     checks.choice('view', view, views, layout.VideoError)
     fastest = timing.FRAME_RATE_HZ
     checks.number('video_fps', fps, 0.1, fastest, layout.VideoError)
     self._fps, self._pictures = fps, 0
-    if view == COMPOSITE:
+    if view == layout.COMPOSITE:
       self._lens = lens.Lens(scene)
       shown = layout.pages(names)
       plans = [composite(scene, each, scale) for each in shown]

@@ -8,12 +8,14 @@ from waggle_tasks import errors
 from waggle_tasks.protocol import checks
 
 PER_PAGE = 5  # Observers beside the shared views; more get pages of their own.
+COMPOSITE = 'composite'  # The view of everyone.
 SHARED = {
   'performer': 'performer_view',
   'top': 'top',
   'overview': 'overview',
 }  # Name of a view -> name of its camera.
 
+FPS = 5.0  # Every fifth frame: cheap beside the run.
 VIEW_PX = (640, 480)  # Of an observer's image, and of a single view.
 
 _WIDTH = 1024

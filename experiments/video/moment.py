@@ -6,8 +6,7 @@ import dataclasses
 import numpy as np
 
 from waggle_tasks.agents import klt, observer_agent
-from waggle_tasks.experiments import rollout as rollout_lib
-from waggle_tasks.experiments import story
+from waggle_tasks.experiments import episode, story
 from waggle_tasks.protocol.symbols import Symbol
 from waggle_tasks.tasks import safety
 
@@ -30,7 +29,7 @@ class Sight:
   track: klt.Track | None
   trail_px: np.ndarray
   reading: story.Reading
-  events: tuple[rollout_lib.Event, ...]
+  events: tuple[episode.Event, ...]
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -58,7 +57,7 @@ class Watch:
   def __init__(self, name: str, agent: observer_agent.ObserverAgent) -> None:
     """Follows an agent from the beginning of its episode."""
     self._name, self._agent = name, agent
-    self._events: list[rollout_lib.Event] = []
+    self._events: list[episode.Event] = []
     self._reading = story.Reading()
     self._trail_px: list[np.ndarray] = []
 

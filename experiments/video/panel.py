@@ -6,8 +6,7 @@ import math
 import numpy as np
 
 from waggle_tasks.agents import observer_agent, receiver
-from waggle_tasks.experiments import palette, story
-from waggle_tasks.experiments import rollout as rollout_lib
+from waggle_tasks.experiments import episode, palette, story
 from waggle_tasks.experiments.video import layout, moment, pen, tiles
 from waggle_tasks.protocol.symbols import Symbol
 
@@ -89,7 +88,7 @@ def card(
 def _entry(
   canvas: np.ndarray,
   plan: layout.Layout,
-  event: rollout_lib.Event,
+  event: episode.Event,
   name: str,
   middle: int,
 ) -> None:
@@ -106,7 +105,7 @@ def _entry(
   pen.text(canvas, words, left, middle, size)
 
 
-def _words(event: rollout_lib.Event) -> str:
+def _words(event: episode.Event) -> str:
   if isinstance(event, observer_agent.Navigation):
     return f'{event.deed} {event.payload.bits}'
   if not isinstance(event, receiver.Event):
@@ -210,7 +209,7 @@ class Strip:
     bottom = plan.px(6) + (len(self._drawn) + 1) * plan.row
     part[plan.px(2) : bottom, column : column + plan.px(2)] = 255
 
-  def _mark(self, event: rollout_lib.Event, middle: int, free: int) -> int:
+  def _mark(self, event: episode.Event, middle: int, free: int) -> int:
     """Draws an event: nulls are small and hollow, the rest are named.
 
     A mark ends at its time. One that would cover the mark before it moves to

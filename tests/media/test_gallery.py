@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from waggle_tasks import scenario
-from waggle_tasks.experiments import gallery, palette, png, story, traces
+from waggle_tasks.experiments import palette, png, shots, story, traces
 
 Waggle = Callable[..., subprocess.CompletedProcess[str]]
 
@@ -49,11 +49,11 @@ def test_a_picture_that_cannot_be_written_is_an_error(
 
 
 def test_each_gesture_shows_the_performer_all_along_its_track() -> None:
-  sent = gallery.firsts(story.sent_in(scenario.Scenario()))
+  sent = shots.firsts(story.sent_in(scenario.Scenario()))
   assert [str(each.symbol) for each in sent] == ['START', '0', '1', 'END']
   images, times_s, centres_px = {}, [], []
   for gesture in sent:
-    for number, frame in enumerate(gallery.exposures(gesture)):
+    for number, frame in enumerate(shots.exposures(gesture)):
       image = np.full((480, 640, 3), 100, np.uint8)
       place = 200 + 12 * number, 200
       cv2.circle(image, place, 3, (255, 0, 0), -1)
@@ -64,7 +64,7 @@ def test_each_gesture_shows_the_performer_all_along_its_track() -> None:
   trace = traces.Trace(
     np.array(times_s), np.array(centres_px, float), rest, rest, rest, rest > -1
   )
-  picture = gallery.gestures(sent, images, trace)
+  picture = shots.gestures(sent, images, trace)
   red = (picture == (255, 0, 0)).all(axis=2).astype(np.uint8)
   count, _ = cv2.connectedComponents(red)
   assert count - 1 == len(images)
