@@ -83,17 +83,17 @@ def test_the_command_makes_pictures_small_enough_to_commit(
   assert max(sizes.values()) < 300_000
 
 
-def test_the_envelope_of_a_sweep_is_drawn(
-  waggle: Waggle, tmp_path: pathlib.Path
+def test_the_envelope_of_a_sweep_is_drawn_without_gl(
+  waggle: Waggle, tmp_path: pathlib.Path, no_gl: dict[str, str]
 ) -> None:
   pytest.importorskip('matplotlib')
   grids = '--grid=distance_m=1.0,1.3', '--grid=bearing_deg=0,20'
   short = '--control=no_send', '--duration_s=0.08', '--observers=1'
-  for command in (
-    ['sweep', *grids, *short, '--workers=1', '--output=flown'],
-    ['gallery', '--sweep=flown', '--output=pictures'],
+  for command, changes in (
+    (['sweep', *grids, *short, '--workers=1', '--output=flown'], {}),
+    (['gallery', '--sweep=flown', '--output=pictures'], no_gl),
   ):
-    done = waggle(*command, cwd=tmp_path)
+    done = waggle(*command, cwd=tmp_path, **changes)
     assert done.returncode == 0, done.stderr
   picture = read(tmp_path / 'pictures' / 'envelope.png')
   assert min(picture.shape[:2]) > 200

@@ -77,11 +77,11 @@ def test_a_suite_of_ones_own_is_a_json_file(
   ] * 2
 
 
-def test_two_finished_folders_are_set_side_by_side(
-  suite: Waggle, reference: object
+def test_two_finished_folders_are_set_side_by_side_without_gl(
+  suite: Waggle, reference: object, no_gl: dict[str, str]
 ) -> None:
   folder = str(reference.folder)
-  done = suite(f'--compare={folder}', folder)
+  done = suite(f'--compare={folder}', folder, **no_gl)
   assert done.returncode == 0, done.stderr
   assert re.search(r'(?m) 1 +0/1 +0/1 +Fail +Fail$', done.stdout)
   assert (
