@@ -6,10 +6,12 @@ import math
 from dm_control import composer, mjcf
 import numpy as np
 
-from waggle_tasks import appearance
+from waggle_tasks import appearance, runtime
 from waggle_tasks.arenas import bounds, clutter, layouts, scenery, views
 from waggle_tasks.arenas import sun as sun_lib
 from waggle_tasks.protocol import timing
+
+runtime.require_versions()
 
 # Of the wall that is seen, where it meets the floor and in its corners.
 _CURVE_M, _CORNER_M = 2.2, 2.6
