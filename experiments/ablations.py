@@ -6,10 +6,11 @@ final confirmation (section 'Limitations and next simulation experiments').
 
 from collections.abc import Mapping, Sequence
 import dataclasses
+from typing import Any
 
 from waggle_tasks.experiments import table, variant_runner, verdicts
 
-Row = Mapping[str, object]
+Row = Mapping[str, Any]
 
 LEGEND = (
   'messages: read as sent in the standard suite; groups: its broadcasts that'

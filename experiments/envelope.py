@@ -3,10 +3,11 @@
 import collections
 from collections.abc import Mapping, Sequence
 import dataclasses
+from typing import Any
 
 from waggle_tasks.experiments import sweep_cases
 
-Row = Mapping[str, object]
+Row = Mapping[str, Any]
 
 _DOWN, _ACROSS = ('distance_m',), ('bearing_deg', 'half_span_deg')
 
@@ -56,7 +57,7 @@ class Panel:
     cells: The results by the values of `down` and `across`.
   """
 
-  fixed: Mapping[str, object]
+  fixed: Mapping[str, Any]
   down: str | None
   across: str | None
   downs: Sequence[object]

@@ -7,6 +7,7 @@ purpose without the code that the navigators use.
 
 from collections.abc import Sequence
 import math
+from typing import Any
 
 import numpy as np
 
@@ -187,7 +188,7 @@ def _fly(
   rollout: episode.Rollout,
   name: str,
   message_s: float,
-) -> dict[str, object]:
+) -> dict[str, Any]:
   """Arrival and hold at the place that was sent, by true positions."""
   positions_m, times_s = rollout.steady_m(name), rollout.times_s
   begin = int(np.searchsorted(times_s, message_s - timing.FRAME_S / 2))

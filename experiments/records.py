@@ -9,6 +9,7 @@ import json
 import os
 import pathlib
 import shutil
+from typing import Any
 
 import numpy as np
 
@@ -69,7 +70,7 @@ def to_json(value: object) -> object:
   }
 
 
-def config(scene: scenario.Scenario, receiver_name: str) -> dict[str, object]:
+def config(scene: scenario.Scenario, receiver_name: str) -> dict[str, Any]:
   """A run's configuration: every field of its scenario, and its receiver."""
   fields = to_json(scene)
   if not isinstance(scene.layout, str):

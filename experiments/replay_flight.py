@@ -8,6 +8,7 @@ reads a message would fly it: what it read is all that counts here.
 
 from collections.abc import Callable
 import hashlib
+from typing import Any
 
 from waggle_tasks.agents import receiver, receivers
 from waggle_tasks.experiments import (
@@ -27,7 +28,7 @@ def fly(
   receiver_name: str,
   identity: str,
   replays: int,
-) -> dict[str, object]:
+) -> dict[str, Any]:
   """Runs a case; called in a worker.
 
   Args:
@@ -85,7 +86,7 @@ def _read(
 
 def _exposure(
   outcome: verdicts.Outcome, spoiling: spoilers.Spoiling, events: int
-) -> dict[str, object]:
+) -> dict[str, Any]:
   right = outcome.decoded == outcome.expected
   said = outcome.decoded or 'nothing'
   failures = () if right else (f'decoding: read {said}; {spoiling.name}',)

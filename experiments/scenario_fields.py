@@ -9,11 +9,12 @@ from collections.abc import Mapping
 import dataclasses
 import inspect
 import math
+from typing import Any
 
 from waggle_tasks import scenario
 from waggle_tasks.protocol import checks, gestures, payload
 
-Values = Mapping[str, object]
+Values = Mapping[str, Any]
 
 # Those that are made from other numbers than their fields.
 _MADE = ('codebook', 'units')
@@ -23,7 +24,7 @@ GROUPS = {
 _WORDS = {'true': True, 'false': False}
 
 
-def defaults() -> dict[str, object]:
+def defaults() -> dict[str, Any]:
   """Every flat name and its default, those of the dataclasses."""
   out = {}
   for field in dataclasses.fields(scenario.Scenario):

@@ -1,5 +1,7 @@
 """Flags for every choice of a scenario, and the scenario that they make."""
 
+from typing import Any
+
 from absl import flags
 
 from waggle_tasks import appearance, scenario
@@ -101,6 +103,6 @@ def read() -> scenario.Scenario:
   return scenario_fields.make(values())
 
 
-def values() -> dict[str, object]:
+def values() -> dict[str, Any]:
   """What the flags say, by the names of `scenario_fields`."""
   return {name: flags.FLAGS[name].value for name in scenario_fields.defaults()}

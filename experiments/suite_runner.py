@@ -7,6 +7,7 @@ import io
 import os
 import pathlib
 import shutil
+from typing import Any
 
 from waggle_tasks import suites
 from waggle_tasks.experiments import (
@@ -33,7 +34,7 @@ def run(
   folder: pathlib.Path,
   workers: int,
   command: str,
-) -> list[dict[str, object]]:
+) -> list[dict[str, Any]]:
   """Runs what is missing in a folder and returns one row for each case.
 
   Whatever ends it, the next call with the same arguments runs only the cases
@@ -135,7 +136,7 @@ def _fly(jobs: Sequence[pool.Job], folder: pathlib.Path, workers: int) -> None:
       os.replace(folder / _DRAFTS / name, folder / _CASES / name)
 
 
-def _csv(rows: Sequence[dict[str, object]]) -> str:
+def _csv(rows: Sequence[dict[str, Any]]) -> str:
   """One line for each observer of each case."""
   text = io.StringIO()
   writer = csv.writer(text, lineterminator='\n')

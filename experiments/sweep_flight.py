@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 import math
+from typing import Any
 
 from waggle_tasks.agents import receiver
 from waggle_tasks.arenas import layouts
@@ -21,7 +22,7 @@ def fly(
   case: sweep_cases.Case,
   receiver_name: str,
   identity: str,
-) -> dict[str, object]:
+) -> dict[str, Any]:
   """Runs a case; called in a worker.
 
   Args:
@@ -45,7 +46,7 @@ def row(
   identity: str,
   rollout: episode.Rollout,
   verdict: verdicts.Verdict,
-) -> dict[str, object]:
+) -> dict[str, Any]:
   """A case's line of results.jsonl, from its episode."""
   poses = case.scene.poses()
   whole = {
@@ -67,14 +68,12 @@ def row(
   return records.to_json(whole)
 
 
-def head(case: sweep_cases.Case) -> dict[str, object]:
+def head(case: sweep_cases.Case) -> dict[str, Any]:
   """The beginning of a case's line: its place in its sweep."""
   return {'case': case.name, 'cell': dict(case.cell), 'repeat': case.repeat}
 
 
-def _exposure(
-  outcome: verdicts.Outcome, pose: layouts.Pose
-) -> dict[str, object]:
+def _exposure(outcome: verdicts.Outcome, pose: layouts.Pose) -> dict[str, Any]:
   """What became of one observer, and where it stood."""
   stages = [failure.partition(':')[0] for failure in outcome.failures]
   return {
@@ -87,7 +86,7 @@ def _exposure(
   }
 
 
-def place(pose: layouts.Pose) -> dict[str, object]:
+def place(pose: layouts.Pose) -> dict[str, Any]:
   """Where an observer stands, seen from the performer."""
   x_m, y_m, _ = pose.position_m
   return {
@@ -96,7 +95,7 @@ def place(pose: layouts.Pose) -> dict[str, object]:
   }
 
 
-def _reading(events: Sequence[episode.Event]) -> dict[str, object]:
+def _reading(events: Sequence[episode.Event]) -> dict[str, Any]:
   """How much it saw, and from where it believes that it saw its message."""
   seen = [event for event in events if isinstance(event, receiver.Event)]
   message = next((event for event in seen if event.message), None)

@@ -2,6 +2,7 @@
 
 import json
 import pathlib
+from typing import Any
 
 from waggle_tasks.experiments import archive, figures, journal
 from waggle_tasks.experiments.pages import document
@@ -14,7 +15,7 @@ NAMES = (
 _FIELDS = {'case', 'cell', 'receiver', 'outcomes', 'scenario'}  # Of a row.
 
 
-def read(folder: pathlib.Path) -> list[dict[str, object]]:
+def read(folder: pathlib.Path) -> list[dict[str, Any]]:
   """The rows of a sweep, or as many as there are yet.
 
   Raises:

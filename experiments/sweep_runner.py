@@ -5,6 +5,7 @@ import csv
 import datetime
 import io
 import pathlib
+from typing import Any
 
 from waggle_tasks.experiments import (
   files,
@@ -38,7 +39,7 @@ def run(
   engine: Engine,
   command: str,
   replays: int = 0,
-) -> list[dict[str, object]]:
+) -> list[dict[str, Any]]:
   """Flies what is missing in a folder and returns one row for each case.
 
   A case is kept in the journal as soon as it was flown. Whatever ends the
@@ -111,7 +112,7 @@ def run(
 
 def _fly(
   jobs: Sequence[pool.Job], engine: Engine, total: int
-) -> Iterator[dict[str, object]]:
+) -> Iterator[dict[str, Any]]:
   """Runs jobs behind a progress bar and yields their rows."""
   frames = {
     job.name: timing.frames(job.arguments[0].scene.episode_s) for job in jobs
@@ -126,7 +127,7 @@ def _fly(
     yield done.value
 
 
-def _csv(rows: Sequence[Mapping[str, object]]) -> str:
+def _csv(rows: Sequence[Mapping[str, Any]]) -> str:
   """One line for each observer of each case."""
   lines = []
   for row in rows:

@@ -7,6 +7,7 @@ the same command goes on where it was.
 from collections.abc import Mapping
 import dataclasses
 import pathlib
+from typing import Any
 
 from absl import flags
 
@@ -17,7 +18,7 @@ from waggle_tasks.protocol import checks
 # Flags defined here belong to the launcher that asks for them.
 flags.disclaim_key_flags()
 
-Results = Mapping[str, list[dict[str, object]]]
+Results = Mapping[str, list[dict[str, Any]]]
 
 
 @dataclasses.dataclass(frozen=True)
@@ -31,7 +32,7 @@ class Variant:
   """
 
   label: str
-  changes: dict[str, object] = dataclasses.field(default_factory=dict)
+  changes: dict[str, Any] = dataclasses.field(default_factory=dict)
   receiver: str = 'klt'
 
 

@@ -8,6 +8,7 @@ from collections.abc import Mapping, Sequence
 import dataclasses
 import inspect
 import re
+from typing import Any
 
 from waggle_tasks import errors, scenarios
 from waggle_tasks import scenario as scenario_lib
@@ -140,7 +141,7 @@ def find(name: str) -> tuple[Case, ...]:
   return SUITES[name]
 
 
-def from_rows(rows: Sequence[Mapping[str, object]]) -> tuple[Case, ...]:
+def from_rows(rows: Sequence[Mapping[str, Any]]) -> tuple[Case, ...]:
   """The cases of a user's own suite.
 
   Args:
@@ -177,7 +178,7 @@ def from_rows(rows: Sequence[Mapping[str, object]]) -> tuple[Case, ...]:
   return tuple(cases)
 
 
-def _parts(changes: Mapping[str, object]) -> dict[str, object]:
+def _parts(changes: Mapping[str, Any]) -> dict[str, Any]:
   """Makes the values of their own that a row gives as tables of numbers."""
   out = dict(changes)
   for field, make in scenario_lib.PARTS.items():

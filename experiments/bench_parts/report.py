@@ -6,6 +6,7 @@ numbers that were measured one after the other.
 
 from collections.abc import Mapping, Sequence
 import statistics
+from typing import Any
 
 from waggle_tasks.experiments import table
 from waggle_tasks.experiments.bench_parts import (
@@ -200,7 +201,7 @@ _RATIOS = {
 }
 
 
-def ratios(results: Mapping[str, object]) -> Ratios:
+def ratios(results: Mapping[str, Any]) -> Ratios:
   """Every ratio, by its title.
 
   Args:
@@ -213,7 +214,7 @@ def ratios(results: Mapping[str, object]) -> Ratios:
   return out
 
 
-def text(results: Mapping[str, object]) -> str:
+def text(results: Mapping[str, Any]) -> str:
   """Every ratio, then a table for each part."""
   parts = []
   if all_ratios := ratios(results):
