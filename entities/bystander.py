@@ -22,7 +22,7 @@ _TURN_RAD = (0.5 * math.pi, 1.5 * math.pi)
 class Bystander(crazyflie.Crazyflie):
   """Moves along a circle, rests, and moves on; drawn anew in each episode."""
 
-  def _build(
+  def _build(  # type: ignore[override]
     self, name: str, middle_m: np.ndarray, radius_m: float, spread_m: float
   ) -> None:
     """Builds the model.

@@ -38,7 +38,7 @@ class _Shown:
     self._pixels = pixels
 
   def __array__(
-    self, dtype: np.typing.DTypeLike = None, copy: bool | None = None
+    self, dtype: np.typing.DTypeLike | None = None, copy: bool | None = None
   ) -> np.ndarray:
     del dtype, copy
     return self._pixels

@@ -15,7 +15,7 @@ class Observer(crazyflie.Crazyflie):
     sensor: What spoils its images, from the next episode on.
   """
 
-  def _build(
+  def _build(  # type: ignore[override]
     self,
     name: str = 'observer',
     camera: str = 'incremental',
@@ -59,7 +59,7 @@ class Observer(crazyflie.Crazyflie):
     self._feed = None
     if not self.sensor.is_clean:
       self._feed = feed.Feed(self.sensor, random_state)
-      self._feed.advance(_time_s(physics))
+      self._feed.advance(float(_time_s(physics)))
 
   def after_step(
     self, physics: mjcf.Physics, random_state: np.random.RandomState
@@ -67,7 +67,7 @@ class Observer(crazyflie.Crazyflie):
     """Brings the feed to the frame that is observed next."""
     del random_state
     if self._feed is not None:
-      self._feed.advance(_time_s(physics))
+      self._feed.advance(float(_time_s(physics)))
 
   @property
   def is_spoilt(self) -> bool:

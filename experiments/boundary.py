@@ -200,8 +200,9 @@ def main(argv: Sequence[str]) -> int:
 
 
 def _swap(observers: int) -> tuple[int, int]:
-  numbers = [int(n) if n.isdecimal() else n for n in _SWAP.value]
-  if len(numbers) != 2 or numbers[0] == numbers[1]:
+  words = _SWAP.value
+  numbers = [int(n) for n in words if n.isdecimal()]
+  if not len(words) == len(numbers) == len({*numbers}) == 2:
     raise SwapError(f'`swap` must name two observers: got {_SWAP.value}')
   for number in numbers:
     checks.integer('swap', number, 1, observers, SwapError)

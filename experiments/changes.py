@@ -26,7 +26,8 @@ def of(scene: scenario.Scenario, told: Container[str] = ()) -> list[str]:
 
 def among(fields: Fields, told: Container[str] = ()) -> list[str]:
   """The same, of the fields of a scenario as config.json has them."""
-  usual, out = _plain(scenario.Scenario()), {}
+  usual = _plain(scenario.Scenario())
+  out: dict[str, Any] = {}
   for name, value in fields.items():
     if value == usual.get(name):
       continue

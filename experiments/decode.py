@@ -15,6 +15,7 @@ import contextlib
 import math
 import pathlib
 import sys
+from typing import Any
 
 from absl import flags
 
@@ -117,10 +118,10 @@ def _folder(folder: pathlib.Path) -> int:
 def _video(path: pathlib.Path) -> int:
   """Reads a recording."""
   names = list(dict.fromkeys(_RECEIVER.value or ['klt']))
-  part = recordings.Part(
-    _START.value, _END.value, _numbers(_ROI, 4, int),
-    _numbers(_ANCHOR, 2, float), _SPEED.value,
-  )  # fmt: skip
+  # Their counts were checked.
+  roi: Any = _numbers(_ROI, 4, int)
+  anchor: Any = _numbers(_ANCHOR, 2, float)
+  part = recordings.Part(_START.value, _END.value, roi, anchor, _SPEED.value)
   with contextlib.ExitStack() as stack:
     recording = stack.enter_context(recordings.Recording(path, _FPS.value))
     focal_px = _focal_px(recording.height)

@@ -146,7 +146,7 @@ def panels(rows: Sequence[Row]) -> list[Panel]:
   ]  # fmt: skip
 
 
-def _levels(rows: Sequence[Row], name: str | None) -> list[object]:
+def _levels(rows: Sequence[Row], name: str | None) -> list[Any]:
   """A factor's values: numbers in their order, others as they come."""
   levels = list(dict.fromkeys(value(row, name) for row in rows))
   numbers = all(isinstance(level, (int, float)) for level in levels)
@@ -159,7 +159,7 @@ def _grouped(
   levels: Sequence[Sequence[object]],
 ) -> dict[tuple, list[Row]]:
   """Rows by their values of some factors, in the order of the levels."""
-  groups = {}
+  groups: dict[tuple, list[Row]] = {}
   for row in rows:
     groups.setdefault(tuple(value(row, n) for n in names), []).append(row)
   places = [{level: n for n, level in enumerate(each)} for each in levels]

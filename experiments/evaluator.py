@@ -53,30 +53,25 @@ def evaluate(
   for number in range(1, scene.observers + 1):
     name = f'observer_{number}'
     expected = expected_bits(scene, number)
-    judge = _judge_waiting if expected is None else _judge_reading
-    outcomes.append(judge(scene, rollout, name, expected))
+    if expected is None:
+      outcomes.append(_judge_waiting(rollout, name))
+    else:
+      outcomes.append(_judge_reading(scene, rollout, name, expected))
   return verdicts.Verdict(tuple(outcomes))
 
 
-def _judge_waiting(
-  scene: scenario.Scenario,
-  rollout: episode.Rollout,
-  name: str,
-  expected: None,
-) -> verdicts.Outcome:
+def _judge_waiting(rollout: episode.Rollout, name: str) -> verdicts.Outcome:
   """An observer that must neither read a message nor move."""
-  del scene
   failures = _contact(rollout, name)
-  message = _message(rollout.events[name])
-  if message is not None:
-    failures.append(f'message: read {message.message.bits}, nothing was sent')
+  _, decoded = _message(rollout.events[name])
+  if decoded is not None:
+    failures.append(f'message: read {decoded}, nothing was sent')
   start_s = _start_s(rollout.events[name])
   if start_s is not None:
     failures.append(f'navigation: started at {start_s:.2f} s')
   failures += _early_motion(rollout, name, math.inf)
-  decoded = message.message.bits if message else None
   return verdicts.Outcome(
-    name, expected, decoded, start_s=start_s, failures=tuple(failures)
+    name, None, decoded, start_s=start_s, failures=tuple(failures)
   )
 
 
@@ -88,12 +83,12 @@ def _judge_reading(
 ) -> verdicts.Outcome:
   """An observer that must read the message and fly it."""
   events = rollout.events[name]
-  message = _message(events)
+  message, decoded = _message(events)
   start_s = _start_s(events)
   failures = _contact(rollout, name)
   until_s = math.inf if start_s is None else start_s
   failures += _early_motion(rollout, name, until_s)
-  if message is None:
+  if message is None or decoded is None:
     why = reasons.diagnose(events)
     found = [f'message: none, {why}', *reasons.find(scene, rollout, name)]
     return verdicts.Outcome(
@@ -102,9 +97,9 @@ def _judge_reading(
     )  # fmt: skip
   seen = [e for e in events if isinstance(e, receiver.Event)]
   frame_events = seen[: seen.index(message) + 1][-NUM_EVENTS:]
-  failures += _frame(frame_events, message.message.bits)
-  if message.message.bits != expected:
-    failures.append(f'message: read {message.message.bits}, sent {expected}')
+  failures += _frame(frame_events, decoded)
+  if decoded != expected:
+    failures.append(f'message: read {decoded}, sent {expected}')
     failures += reasons.find(scene, rollout, name)
   final_null_s = message.time_s if message.symbol == 'NULL' else None
   if start_s != final_null_s:
@@ -120,7 +115,7 @@ def _judge_reading(
   flown = _fly(scene, rollout, name, message.time_s)
   failures += flown.pop('failures')
   return verdicts.Outcome(
-    name, expected, message.message.bits,
+    name, expected, decoded,
     end_s=_end_s(frame_events),
     final_null_s=final_null_s, start_s=start_s,
     failures=tuple(failures), **flown,
@@ -129,11 +124,12 @@ def _judge_reading(
 
 def _message(
   events: Sequence[episode.Event],
-) -> receiver.Event | None:
+) -> tuple[receiver.Event | None, str | None]:
+  """The event that completed a message, and its bits."""
   for event in events:
     if isinstance(event, receiver.Event) and event.message is not None:
-      return event
-  return None
+      return event, event.message.bits
+  return None, None
 
 
 def _end_s(events: Sequence[receiver.Event]) -> float | None:

@@ -61,7 +61,9 @@ def shown(
     describe: The words before the bar, from how many jobs are done and the
       names of those that are under way.
   """
-  flown, active, done = {}, {}, 0
+  flown: dict[str, int] = {}
+  active: dict[str, bool] = {}
+  done = 0
   total = sum(frames.values())
   form = _FORM + ' {remaining}]'
   with seconds_bar(total, smoothing=0, bar_format=form) as bar:

@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 import contextlib
 import pathlib
+from typing import Any
 
 from absl import flags
 
@@ -59,26 +60,26 @@ def recorders(
   Raises:
     VideoError: if a choice or the codec is refused.
   """
-  values = flags.FLAGS
+  values: dict[str, Any] = flags.FLAGS.flag_values_dict()
   for name in _ABOUT_VIDEO:
-    if values[name].present and not values['video'].value:
+    if flags.FLAGS[name].present and not values['video']:
       raise layout.VideoError(f'`{name}` is about a video: add --video')
   with contextlib.ExitStack() as stack:
-    watchers = []
-    if values['raw'].value:
+    watchers: list[episode.Watcher] = []
+    if values['raw']:
       watchers.append(stack.enter_context(capture.Recorder(folder)))
-    if values['video'].value:
+    if values['video']:
       # Imported here: what films draws with the simulator.
       from waggle_tasks.experiments.video import film
 
       shot = film.Film(
         folder,
         scene,
-        name=values['video_file'].value,
-        view=values['view'].value,
-        fps=values['video_fps'].value,
-        scale=values['video_scale'].value,
-        marks=values['video_marks'].value,
+        name=values['video_file'],
+        view=values['view'],
+        fps=values['video_fps'],
+        scale=values['video_scale'],
+        marks=values['video_marks'],
       )
       watchers.append(stack.enter_context(shot))
     yield watchers

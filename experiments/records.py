@@ -34,7 +34,7 @@ class TakenError(OutputError):
   """A name that exists, or that somebody else is about to write."""
 
 
-def to_json(value: object) -> object:
+def to_json(value: object) -> Any:  # noqa: ANN401
   """Turns configurations, events and arrays into what JSON can hold."""
   match value:
     case payload.Payload():

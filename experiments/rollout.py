@@ -12,7 +12,8 @@ from waggle_tasks.experiments import episode, provenance, sight
 from waggle_tasks.experiments import traces as traces_lib
 from waggle_tasks.protocol import timing
 
-Event, Rollout = episode.Event, episode.Rollout
+Event = episode.Event
+Rollout = episode.Rollout
 
 
 def run(

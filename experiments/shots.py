@@ -80,7 +80,7 @@ def take() -> dict[str, np.ndarray]:  # (H, W, 3) uint8 each
   flown = rollout_lib.run(scene, 'klt', [shots])
   sent, trace = story.sent_in(scene), [*flown.traces.values()][_OBSERVER]
   return {
-    'composite.png': shots.composite,
+    'composite.png': np.asarray(shots.composite),
     'gestures.png': gestures(firsts(sent), shots.images, trace),
   }
 

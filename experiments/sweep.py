@@ -83,8 +83,8 @@ def main(argv: Sequence[str]) -> int:
   # Imported here: to show results, no simulator is needed.
   from waggle_tasks.experiments import cluster, pool, sweep_runner
 
-  workers = launch.worker_count(_WORKERS)
-  engine = functools.partial(pool.run, workers=workers)
+  workers = launch.worker_count('workers', _WORKERS.value)
+  engine: sweep_runner.Engine = functools.partial(pool.run, workers=workers)
   if _SCHEDULER.value is not None:
     place = cluster.find(_SCHEDULER.value)
     engine = functools.partial(cluster.run, place=place)

@@ -79,7 +79,8 @@ def run(
       row['identity']: row
       for row in journal.read(folder / sweep_results.JOURNAL)
     }
-    fly, more = sweep_flight.fly, ()
+    fly: Callable[..., dict[str, Any]] = sweep_flight.fly
+    more: tuple[int, ...] = ()
     if replays:
       fly, more = replay_flight.fly, (replays,)
     jobs = [

@@ -69,16 +69,15 @@ def run(command: str, variants: Mapping[str, Variant]) -> Results:
   # Imported here: help needs no simulator.
   from waggle_tasks.experiments import suite_runner
 
-  suite, wanted, names = (
-    flags.FLAGS[name].value for name in ('suite', 'case', 'variant')
-  )
+  values: dict[str, Any] = flags.FLAGS.flag_values_dict()
+  suite, wanted, names = (values[name] for name in ('suite', 'case', 'variant'))
   cases = suites.find(suite)
   for name in wanted:
     checks.choice('case', name, [c.name for c in cases], suites.SuiteError)
   for name in names:
     checks.choice('variant', name, [*variants], suites.SuiteError)
-  cases = [c for c in cases if not wanted or c.name in wanted]
-  workers = launch.worker_count(flags.FLAGS['workers'])
+  chosen = [c for c in cases if not wanted or c.name in wanted]
+  workers = launch.worker_count('workers', values['workers'])
   results = {}
   for name in names or variants:
     variant = variants[name]
@@ -86,8 +85,8 @@ def run(command: str, variants: Mapping[str, Variant]) -> Results:
     line = provenance.command_line(
       command, [f'--suite={suite}', f'--variant={name}']
     )
-    folder = pathlib.Path(flags.FLAGS['output'].value) / name
-    moved = [_moved(case, variant) for case in cases]
+    folder = pathlib.Path(values['output']) / name
+    moved = [_moved(case, variant) for case in chosen]
     results[name] = suite_runner.run(
       moved, variant.receiver, folder, workers, line
     )

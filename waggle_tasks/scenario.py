@@ -1,7 +1,9 @@
 """A scenario: every choice of one episode, frozen and checked."""
 
+from collections.abc import Callable
 import dataclasses
 import math
+from typing import Any
 
 from waggle_tasks import appearance as appearance_lib
 from waggle_tasks import errors
@@ -31,7 +33,7 @@ NO_SEND_S = 10.0  # Paper, section 'Controls and supplemental suite'.
 INTERRUPTED_S = 60.0  # The same.
 MAX_OBSERVERS = 64
 # Fields that are values of their own, and what makes one from plain numbers.
-PARTS = {
+PARTS: dict[str, Callable[..., Any]] = {
   'codebook': gestures.v_codebook,
   'pauses': timing.Timing,
   'tolerance': clock.Tolerance,
@@ -206,7 +208,9 @@ class Scenario:
     return poses
 
   def _layout(self) -> layouts.Layout:
-    if callable(getattr(self.layout, 'poses', None)):
+    if not isinstance(self.layout, str) and callable(
+      getattr(self.layout, 'poses', None)
+    ):
       return self.layout
     checks.choice('layout', self.layout, LAYOUTS, ScenarioError)
     if self.layout == 'arc':

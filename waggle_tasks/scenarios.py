@@ -1,6 +1,7 @@
 """Scenarios by name, as values that need no simulator."""
 
 import dataclasses
+from typing import Any
 
 from waggle_tasks import scenario
 from waggle_tasks.protocol import checks, decoys
@@ -28,6 +29,7 @@ def find(name: str, **changes: object) -> scenario.Scenario:
   error = scenario.ScenarioError
   checks.choice('task', name, [*SCENARIOS], error)
   fields = [field.name for field in dataclasses.fields(scenario.Scenario)]
-  for field in changes:
+  values: dict[str, Any] = changes
+  for field in values:
     checks.choice('field', field, fields, error)
-  return dataclasses.replace(SCENARIOS[name], **changes)
+  return dataclasses.replace(SCENARIOS[name], **values)

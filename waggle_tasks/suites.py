@@ -65,7 +65,7 @@ class Case:
 
 
 # name, label, correct, passed, changes
-_STANDARD = (
+_STANDARD: tuple[tuple[str, str, int, bool, dict[str, Any]], ...] = (
   ('default', 'Default, forward', 3, True, {}),
   ('heading-45', '000110, heading 45 deg', 3, True, {'payload': '000110'}),
   ('heading-90', '001010, heading 90 deg', 3, True, {'payload': '001010'}),
@@ -88,7 +88,7 @@ _STANDARD = (
   ('span-40-backward', 'Half-span 40 deg, 100010', 3, False,
    {'observers': 5, 'half_span_deg': 40.0, 'payload': '100010'}),
 )  # fmt: skip
-_SUPPLEMENTAL = (
+_SUPPLEMENTAL: tuple[tuple[str, str, int, bool, dict[str, Any]], ...] = (
   ('four-forward', 'Default geometry, forward', 4, True, {'observers': 4}),
   ('five-forward', 'Default geometry, forward', 5, True, {'observers': 5}),
   ('five-backward', 'Default geometry, 100010', 5, True,

@@ -123,7 +123,7 @@ def _head(run: archive.Run) -> markup.Markup:
 
 def _changes(run: archive.Run) -> markup.Markup | None:
   """What is unlike the default: disturbances, looks, languages."""
-  told = _TOLD
+  told: tuple[str, ...] = _TOLD
   if run.scenario['layout'] == 'arc':
     told = (*told, 'half_span_deg')
   found = changes.among(run.scenario, told)

@@ -1,5 +1,6 @@
 """Films an episode while it runs: a watcher that leaves video files."""
 
+import functools
 import pathlib
 import types
 
@@ -61,7 +62,9 @@ class Film:
     if view == layout.COMPOSITE:
       self._lens = lens.Lens(scene)
       shown = layout.pages(names)
-      plans = [composite(scene, each, scale) for each in shown]
+      plans: list[page.Composite | page.Single] = [
+        composite(scene, each, scale) for each in shown
+      ]
     else:
       self._lens = lens.Lens(scene, [n for n in layout.SHARED if n == view])
       shown = [tuple(n for n in names if n == view)]
@@ -107,7 +110,7 @@ class Film:
     shared = self._lens.shared()
     for names, plan, worker in self._pages:
       now = self._lens.moment(names, shared)
-      worker.put(lambda plan=plan, now=now: plan.draw(now))
+      worker.put(functools.partial(plan.draw, now))
 
 
 def composite(

@@ -146,12 +146,14 @@ def plan(observers: int, scale: float = 1.0, notes: int = 0) -> Layout:
     VideoError: if a number is out of its range.
   """
   checks.integer('observers', observers, 1, PER_PAGE, VideoError)
-  top = _GAP + _HEADER + notes * _NOTE
+  top: float = _GAP + _HEADER + notes * _NOTE
   cell = (_WIDTH - 5 * _GAP) / 4
   high = cell * 3 / 4
   if observers == 1:
     tall = 2 * (_TITLE + high) + _GAP
-    eyes = [(_GAP, top + _TITLE, (tall - _TITLE - _FOOT) * 4 / 3)]
+    eyes: list[tuple[float, float, float]] = [
+      (_GAP, top + _TITLE, (tall - _TITLE - _FOOT) * 4 / 3)
+    ]
     left = _WIDTH - 2 * (cell + _GAP)
     cells = [
       (left + column * (cell + _GAP), top + row * (_TITLE + high + _GAP))

@@ -41,7 +41,8 @@ def header(
 
 def notes(changed: Sequence[str]) -> list[str]:
   """What is unlike the default scenario, in lines that fit a page."""
-  room, lines = layout.plan(1).notes.width, []
+  room = layout.plan(1).notes.width
+  lines: list[str] = []
   for each in changed:
     longer = f'{lines[-1]}, {each}' if lines else each
     if lines and pen.width_px(longer, _SIZE) <= 0.95 * room:
@@ -242,7 +243,9 @@ class Strip:
       label = '?' if event.symbol is Symbol.UNKNOWN else str(event.symbol)
       colour = palette.SYMBOLS[event.symbol]
     else:
-      label, colour = _DEEDS.get(getattr(event, 'deed', None), '!'), _DEED
+      label, colour = '!', _DEED
+      if isinstance(event, observer_agent.Navigation):
+        label = _DEEDS.get(event.deed, '!')
     width = pen.chip_width(label, size)
     left = max(column - width, free)
     if left <= column and left + width <= self._plan.strip.width:
