@@ -85,6 +85,9 @@ def test_a_room_imports_only_what_the_table_allows(
   home: str, room: Room, path: pathlib.Path
 ) -> None:
   names = imported(ast.parse(path.read_text(encoding='utf-8')))
+  if path == ROOT / 'waggle_tasks' / '__init__.py':
+    # Its public names are of all rooms; they are imported when asked for.
+    room = dataclasses.replace(room, rooms=room.rooms | {'agents'})
   assert {n for n in names if not is_allowed(n, home, room)} == set()
 
 
