@@ -15,7 +15,7 @@ TEST = (
   'pytest>=8', 'pytest-xdist>=3.1', 'hypothesis>=6.16', 'setuptools>=77',
   *CLUSTER, *ANALYSIS, *VIDEO,
 )  # fmt: skip
-DEV = (*TEST, 'ruff>=0.14', 'mypy>=2.1', 'build>=1')
+DEV = (*TEST, 'ruff>=0.14', 'mypy>=2.4', 'build>=1')
 
 
 def version() -> str:

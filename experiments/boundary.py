@@ -12,7 +12,7 @@ when not.
 from collections.abc import Callable, Sequence
 import dataclasses
 import sys
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from absl import flags
 import numpy as np
@@ -200,13 +200,15 @@ def main(argv: Sequence[str]) -> int:
 
 
 def _swap(observers: int) -> tuple[int, int]:
-  words = _SWAP.value
-  numbers = [int(n) for n in words if n.isdecimal()]
-  if not len(words) == len(numbers) == len({*numbers}) == 2:
+  # Words that are no numbers are refused by the check below.
+  numbers: list[Any] = [int(n) if n.isdecimal() else n for n in _SWAP.value]
+  if len(numbers) != 2 or numbers[0] == numbers[1]:
     raise SwapError(f'`swap` must name two observers: got {_SWAP.value}')
-  for number in numbers:
+  one, other = (
     checks.integer('swap', number, 1, observers, SwapError)
-  return numbers[0] - 1, numbers[1] - 1
+    for number in numbers
+  )
+  return one - 1, other - 1
 
 
 def _message(events: Sequence[receiver.Event]) -> str:
