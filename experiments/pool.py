@@ -20,6 +20,7 @@ from typing import Any
 import cv2
 
 from waggle_tasks import errors
+from waggle_tasks.experiments import gl
 
 SILENCE_S = 120.0  # Longer than any job is silent, starting included.
 TRIES = 2
@@ -204,6 +205,8 @@ def _serve(pipe: connection.Connection) -> None:
       answer = ('done', value)
     except BrokenPipeError:
       return
-    except Exception:
-      answer = ('failed', traceback.format_exc(limit=-1).strip())
+    except Exception as error:
+      # Where nothing can be drawn, one line says what to mend.
+      said = gl.problem() if gl.may_cause(error) else None
+      answer = ('failed', said or traceback.format_exc(limit=-1).strip())
     pipe.send(answer)

@@ -12,6 +12,7 @@ from waggle_tasks.experiments import episode, provenance, sight
 from waggle_tasks.experiments import traces as traces_lib
 from waggle_tasks.protocol import timing
 
+# For whoever flies and needs nothing else of an episode.
 Event = episode.Event
 Rollout = episode.Rollout
 
