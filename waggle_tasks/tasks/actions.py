@@ -54,9 +54,9 @@ def specification(names: Sequence[str]) -> list[specs.BoundedArray]:
 
 def _bounds() -> tuple[np.ndarray, np.ndarray]:
   """Lowest and highest reference, (13,) each: inside the room."""
-  room = bounds
-  low_m = np.array([-room.HALF_WIDTH_M, -room.HALF_DEPTH_M, 0.0])
-  high_m = np.array([room.HALF_WIDTH_M, room.HALF_DEPTH_M, room.HEIGHT_M])
+  width_m, depth_m = bounds.HALF_WIDTH_M, bounds.HALF_DEPTH_M
+  low_m = np.array([-width_m, -depth_m, 0.0])
+  high_m = np.array([width_m, depth_m, bounds.HEIGHT_M])
   speed = np.full(3, limits.MAX_SPEED_MPS)
   acceleration = np.full(3, limits.MAX_SIDEWAYS_MPS2)
   return (
