@@ -15,7 +15,7 @@ TEST = (
   'pytest>=8', 'pytest-xdist>=3.1', 'hypothesis>=6.16', 'setuptools>=77',
   *CLUSTER, *ANALYSIS, *VIDEO,
 )  # fmt: skip
-DEV = (*TEST, 'ruff>=0.14', 'build>=1')
+DEV = (*TEST, 'ruff>=0.14', 'mypy>=2.4', 'build>=1')
 
 
 def version() -> str:
@@ -83,7 +83,7 @@ setuptools.setup(
     'waggle_tasks': 'waggle_tasks',
     **{f'waggle_tasks.{folder}': folder for folder in FOLDERS},
   },
-  package_data={'': ['*.xml', '*.json', '*.css', '*.js']},
+  package_data={'': ['*.xml', '*.json', '*.css', '*.js', 'py.typed']},
   install_requires=[
     'absl-py>=2',
     'dm-control==1.0.50',

@@ -96,7 +96,8 @@ class Follower:
     self._ghost = departure.ghost
     left, top, right, bottom = departure.ghost.box
     self._home = slice(top, bottom), slice(left, right)
-    _, last = departure.greys[-1]
+    # It has left in the last one, which is there.
+    last = next(each for _, each in departure.greys[::-1] if each is not None)
     self._behind = last[self._home].astype(np.float32)
     self._background.grey[self._home] = last[self._home]
     self._background.loosen(departure.slack_px)

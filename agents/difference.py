@@ -167,9 +167,9 @@ class Detector:
     """Mean square (h, w) float32 of differences about each pixel."""
     behind, unexplained = light.lit(background.grey, grey, self.noise, wide)
     change = cv2.subtract(grey, behind, dtype=cv2.CV_32F)
-    loose = background.slack
-    if loose is not None or unexplained:
-      loose = unexplained + (0.0 if loose is None else loose.astype(np.float32))
+    slack = background.slack
+    if slack is not None or unexplained:
+      loose = unexplained + (0.0 if slack is None else slack.astype(np.float32))
       change = cv2.max(cv2.absdiff(change, 0.0) - loose, 0.0)
     side = self._config.box_px
     return cv2.boxFilter(

@@ -58,7 +58,8 @@ class ExcursionSegmenter:
     config, now_s = self._config, track.time_s
     away = np.hypot(*(track.centre_px - self._home_px)) > self._radius_px
     if not self.active:
-      return self._rest(track, away)
+      self._rest(track, away)
+      return None
     self._path.append(track)
     slow = track.speed_px_s < self._slow_px_s
     self.returned = back = slow and not away

@@ -86,7 +86,7 @@ class Separation:
       for at_s, each in self.greys
       if each is not None and _LAG_S - 1e-6 < now_s - at_s < 2 * _LAG_S + 1e-6
     ]
-    if not older:
+    if grey is None or not older:
       return None
     known, grey_before = self._background, older[-1]
     before = difference.Background(grey_before, known.variance, known.slack)

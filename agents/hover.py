@@ -73,10 +73,12 @@ class Hover:
     self._lost_since_s = math.nan
     if self._alignment.moving and not self._slack_px:
       self._loosen()
-    if self._separation is not None:
-      return self._separate(difference.grey(aligned), time_s)
     if self._background is not None:
-      return self._watch(aligned, time_s)
+      scene = self._alignment, self._background
+      if self._separation is None:
+        return self._watch(*scene, aligned, time_s)
+      grey = difference.grey(aligned)
+      return self._separate(*scene, self._separation, grey, time_s)
     if not self._learn(difference.grey(aligned), time_s):
       self._begin(self._clean(image), time_s)
     return None
@@ -134,31 +136,30 @@ class Hover:
       mean = self._background.grey
       self._alignment = alignment.Alignment(mean)
       self._know_target(mean)
-      self._last = None
+      self._last: np.ndarray | None = None
     return True
 
-  def _watch(self, image: np.ndarray, time_s: float) -> Departure | None:
+  def _watch(
+    self,
+    aligner: alignment.Alignment,
+    background: difference.Background,
+    image: np.ndarray,
+    time_s: float,
+  ) -> Departure | None:
     middle = _middle(image, self._config.watch_px)
     if self._last is None or not np.array_equal(image[middle], self._last):
       self._last = image[middle].copy()
       grey = difference.grey(image, middle)
-      if self._moved(grey, self._background[middle], 1.0):
+      if self._moved(grey, background[middle], 1.0):
         self._since_s = time_s
-        self._separation = ghost.Separation(
-          self._detector, self._strict(), self._config,
+        separation = self._separation = ghost.Separation(
+          self._detector, _strict(background), self._config,
           _middle(image, _REST_PX), middle,
         )  # fmt: skip
-        return self._separate(difference.grey(image), time_s)
+        whole = difference.grey(image)
+        return self._separate(aligner, background, separation, whole, time_s)
     self.visible = self._contrast
     return None
-
-  def _strict(self) -> difference.Background:
-    """The background without slack, which would hide a ghost, in the middle."""
-    known = self._background
-    if (slack := known.slack) is not None:
-      slack = slack.copy()
-      slack[_middle(slack, _REST_PX)] = 0
-    return difference.Background(known.grey, known.variance, slack)
 
   def _change(
     self,
@@ -207,17 +208,23 @@ class Hover:
     left = self._change(undone, loose, spread).sum()
     return bool(left <= _MAX_LEFT * change)
 
-  def _separate(self, grey: np.ndarray, time_s: float) -> Departure | None:
-    separation = self._separation
-    resting = self._hardly_moved(grey, self._background, 1.0)
+  def _separate(
+    self,
+    aligner: alignment.Alignment,
+    background: difference.Background,
+    separation: ghost.Separation,
+    grey: np.ndarray,
+    time_s: float,
+  ) -> Departure | None:
+    resting = self._hardly_moved(grey, background, 1.0)
     separation.add(grey, time_s)
     self.visible = resting and self._contrast
     if not resting and (found := separation.find()):
       return Departure(
-        self._alignment, self._detector, self._speckled, self._background,
+        aligner, self._detector, self._speckled, background,
         self._slack_px, found, separation.greys,
       )  # fmt: skip
-    if not self._moved(grey, self._background, 1.0):
+    if not self._moved(grey, background, 1.0):
       self._separation = None
     elif config_lib.lasted(self._since_s, time_s, self._config.separate_s):
       if resting:
@@ -225,6 +232,14 @@ class Hover:
       else:
         self._forget()
     return None
+
+
+def _strict(known: difference.Background) -> difference.Background:
+  """A background without slack, which would hide a ghost, in the middle."""
+  if (slack := known.slack) is not None:
+    slack = slack.copy()
+    slack[_middle(slack, _REST_PX)] = 0
+  return difference.Background(known.grey, known.variance, slack)
 
 
 def _middle(image: np.ndarray, side: int) -> tuple[slice, slice]:

@@ -110,7 +110,7 @@ class KltTracker:
     self._points = np.empty((0, 2), np.float32)
     # Durations and shifts of the last images, of which speed is made.
     self._recent: deque[tuple[float, np.ndarray]] = deque()
-    self._centre_px: np.ndarray | None = None
+    self._centre_px = np.empty(0)  # (2,) from the first image on.
     self.anchor_px: np.ndarray | None = None
 
   def step(self, image: np.ndarray, time_s: float) -> Track:
@@ -124,7 +124,7 @@ class KltTracker:
       The target in this image.
     """
     config = self._config
-    if self._centre_px is None:
+    if not self._centre_px.size:
       self._centre_px = np.array([image.shape[1], image.shape[0]]) / 2
     patch = _Patch.of(image, self._centre_px, 3 * config.box_px)
     elapsed_s = time_s - self._time_s
@@ -132,8 +132,8 @@ class KltTracker:
       self._points = self._points[:0]  # Nothing to follow across a gap.
     followed = len(self._points)
     shift_px, support = np.zeros(2), 0
-    if followed:
-      shift_px, support = self._follow(patch, elapsed_s)
+    if followed and self._last is not None:
+      shift_px, support = self._follow(self._last, patch, elapsed_s)
     quality = support / followed if followed else 0.0
     valid = support >= config.min_support and quality >= config.min_quality
     if valid:
@@ -156,16 +156,19 @@ class KltTracker:
     total_s = sum(each_s for each_s, _ in recent)
     while total_s - recent[0][0] > _SPEED_S - 1e-6:
       total_s -= recent.popleft()[0]
-    return math.hypot(*sum(shift for _, shift in recent)) / total_s
+    way_px = sum((shift for _, shift in recent), np.zeros(2))
+    return math.hypot(*way_px) / total_s
 
   def _square(self, patch: _Patch, side_px: int) -> _Patch:
     left, top = (int(c - side_px / 2) for c in self._centre_px)
     return patch.crop(left, top, left + side_px, top + side_px)
 
-  def _follow(self, patch: _Patch, elapsed_s: float) -> tuple[np.ndarray, int]:
+  def _follow(
+    self, last: _Patch, patch: _Patch, elapsed_s: float
+  ) -> tuple[np.ndarray, int]:
     """Moves the features to the new image; the target's shift and support."""
     config = self._config
-    before = self._square(self._last, 2 * config.box_px)
+    before = self._square(last, 2 * config.box_px)
     height, width = before.grey.shape
     after = patch.crop(
       before.left, before.top, before.left + width, before.top + height

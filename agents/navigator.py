@@ -89,16 +89,18 @@ class Navigator:
       self._hold_m = position_m.copy()
     if self._flight is None:
       return reference.Reference.hover(self._hold_m)
-    self._watch_arrival(position_m, time_s)
+    self._watch_arrival(self._flight, position_m, time_s)
     motion = self._flight.motion(time_s + timing.FRAME_S / 2)
     return reference.Reference(*motion, 0.0, self._flight.goal_m)
 
-  def _watch_arrival(self, position_m: np.ndarray, time_s: float) -> None:
+  def _watch_arrival(
+    self, way: flight.Flight, position_m: np.ndarray, time_s: float
+  ) -> None:
     last, self._last = self._last, (time_s, position_m.copy())
     if last is None or self.arrival_s is not None:
       return
     speed_mps = np.linalg.norm(position_m - last[1]) / (time_s - last[0])
-    error_m = np.linalg.norm(position_m - self._flight.goal_m)
+    error_m = np.linalg.norm(position_m - way.goal_m)
     if not flight.is_arrived(float(error_m), float(speed_mps)):
       self._there_since_s = np.nan
     elif np.isnan(self._there_since_s):

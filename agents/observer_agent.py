@@ -69,6 +69,7 @@ class ObserverAgent:
     self._chain = provenance.Chain()
     self._command: navigator_lib.Command | None = None
     self.events: list[receiver.Event | Navigation] = []
+    self.read_s = -math.inf  # The time of the last image that was read.
     self._time_s = -math.inf
     self._action: np.ndarray | None = None
 
@@ -90,7 +91,7 @@ class ObserverAgent:
     """
     _check(observation, 'this agent')
     time_s = float(observation['time_s'])
-    if time_s <= self._time_s:
+    if self._action is not None and time_s <= self._time_s:
       return self._action
     position_m = np.asarray(observation['position_m'])
     if self._navigator.target_m is None:  # Navigating, it reads no more.
@@ -107,22 +108,28 @@ class ObserverAgent:
   ) -> None:
     events = self.receiver.step(image, time_s)  # It may refuse the image.
     self._chain.add(image, time_s)
+    self.read_s = time_s
     for event in events:
       self.events.append(event)
       if event.message is not None:
-        self._command = navigator_lib.Command(event.message, self._chain.digest)
-        self._navigator.accept(self._command, position_m, time_s)
+        command = navigator_lib.Command(event.message, self._chain.digest)
+        self._navigator.accept(command, position_m, time_s)
+        self._command = command
         self._note(Deed.START, time_s)
 
   def _note(self, deed: Deed, time_s: float) -> None:
+    target_m, command = self._navigator.target_m, self._command
+    if target_m is None or command is None:
+      return  # Nothing is done without a command.
+    x_m, y_m, z_m = map(float, target_m)
     self.events.append(
       Navigation(
         time_s,
         deed,
-        tuple(map(float, self._navigator.target_m)),
-        self._command.payload,
+        (x_m, y_m, z_m),
+        command.payload,
         self._chain.images,
-        self._command.provenance,
+        command.provenance,
       )
     )
 

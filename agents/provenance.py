@@ -1,6 +1,7 @@
 """What a receiver's message was made from, as a chain of hashes."""
 
 import hashlib
+from typing import Any
 
 import numpy as np
 import xxhash
@@ -23,7 +24,8 @@ class Chain:
   def add(self, image: np.ndarray, time_s: float) -> None:
     """Adds an image that a receiver is about to take, of any shape."""
     shape = 'x'.join(map(str, image.shape))
-    digest = xxhash.xxh3_64_hexdigest(np.ascontiguousarray(image))
+    whole: Any = np.ascontiguousarray(image)
+    digest = xxhash.xxh3_64_hexdigest(whole)
     self._sha.update(f'{shape} {digest} {time_s!r}\n'.encode())
     self.images += 1
 

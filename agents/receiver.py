@@ -86,11 +86,11 @@ class StagedReceiver:
     self._watcher = watchers.make(config)
     templates = views.templates(agreement, config.views)
     self._recogniser = recogniser.Recogniser(config.recognition, templates)
-    bridges = config.stillness.bridges and clock is not None
+    blind_s = 0.0
+    if clock is not None and config.stillness.bridges:
+      blind_s = clock.blind_s
     self._stillness = stillness.StillnessDetector(
-      config.stillness,
-      config.tracking.max_gap_s,
-      clock.blind_s if bridges else 0.0,
+      config.stillness, config.tracking.max_gap_s, blind_s
     )
     self._liveness = liveness.Liveness(config.stillness.max_stale_s)
     self._sight = sight.Sight()
@@ -149,7 +149,7 @@ class StagedReceiver:
     self._parser, outcome = self._parser.step(symbol, moment)
     self._liveness.event(symbol is Symbol.NULL, not self._parser.begun)
     message = rejection = None
-    where = None, None
+    where: tuple[float | None, float | None] = None, None
     if recognition is not None:
       self._where = recognition.view_angle_deg, recognition.distance_m
     if isinstance(outcome, frame.Message):

@@ -73,7 +73,7 @@ class Recogniser:
     reason = self._reason(rmse, second - rmse, closure)
     if best is Symbol.START:  # A new message, maybe of someone else.
       self._sightings = views.Sightings(self._templates)
-    where = None, None
+    where: tuple[float | None, float | None] = None, None
     if not reason:
       where, reason = self._locate(best, errors, span_px)
     return Recognition(

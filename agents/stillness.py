@@ -98,9 +98,9 @@ class StillnessDetector:
       track.width_px
     ) and track.speed_px_s >= self._config.slow_px_s(track.width_px)
 
-  def _still(self, track: klt.Track, anchor_px: np.ndarray) -> bool:
+  def _still(self, track: klt.Track, anchor_px: np.ndarray | None) -> bool:
     config = self._config
-    return bool(
+    return anchor_px is not None and bool(
       track.speed_px_s < config.slow_px_s(track.width_px)
       and np.hypot(*(track.centre_px - anchor_px)) <= config.anchor_px
     )

@@ -51,12 +51,14 @@ class Templates:
     paths: (4, V, 80, 2) without unit, in the order of `MOTIONS`.
     views: The V views they are seen from; None for the paper's templates,
       which are no pictures.
-    spans_px: (4, V) how large they are in the picture; None without views.
+    spans_px: (4, V) how large they are in the picture; empty without views.
   """
 
   paths: np.ndarray
   views: tuple[View, ...] | None = None
-  spans_px: np.ndarray | None = None
+  spans_px: np.ndarray = dataclasses.field(
+    default_factory=lambda: np.empty((4, 0))
+  )
 
   def errors(self, points: np.ndarray) -> np.ndarray:
     """RMSE (4, V) to the normalised path (80, 2)."""
@@ -131,12 +133,12 @@ class Sightings:
 
   def view(self) -> View | None:
     """The view that fits all motions best, None when there is none."""
-    if not self._errors:
+    views = self._templates.views
+    if views is None or not self._errors:
       return None
     errors, scales = np.array(self._errors), np.array(self._scales)  # (M, V)
     misfit = np.mean(errors**2, axis=0) + np.var(scales, axis=0)
     scale = np.mean(scales, axis=0)
-    views = self._templates.views
     # Of distances, which look much alike, the one of the right size; of
     # angles, which START alone does not tell, the front.
     prior = _SIZE * scale**2 + _FRONT * np.abs(self._angles_deg)

@@ -12,14 +12,20 @@ class Watcher(Protocol):
   """Follows the target and cuts its track into motions.
 
   Attributes:
-    anchor_px: (2,) where the target was first, or None.
-    moving: Whether a motion is under way.
     gave_up: Whether it has just given up the target, to seek one anew.
   """
 
-  anchor_px: np.ndarray | None
-  moving: bool
   gave_up: bool
+
+  @property
+  def anchor_px(self) -> np.ndarray | None:
+    """(2,) where the target was first, or None."""
+    ...
+
+  @property
+  def moving(self) -> bool:
+    """Whether a motion is under way."""
+    ...
 
   def step(
     self, image: np.ndarray, time_s: float
@@ -98,6 +104,15 @@ class AbsoluteWatcher:
 
 def make(config: config_lib.Config) -> Watcher:
   """The watcher of a configuration."""
-  if isinstance(config.tracking, config_lib.Differencing):
-    return AbsoluteWatcher(config.tracking, config.motion)
-  return FlowWatcher(config.tracking, config.motion)
+  match config.tracking, config.motion:
+    case (
+      config_lib.Differencing() as tracking,
+      config_lib.Excursion() as motion,
+    ):
+      return AbsoluteWatcher(tracking, motion)
+    case config_lib.Tracking() as tracking, config_lib.Motion() as motion:
+      return FlowWatcher(tracking, motion)
+  raise config_lib.ReceiverError(
+    '`motion` must be an Excursion for Differencing, a Motion for Tracking: got'
+    f' {type(config.motion).__name__} for {type(config.tracking).__name__}'
+  )

@@ -76,7 +76,11 @@ def encoded(pixels: np.ndarray) -> bytes:
   height, width, _ = pixels.shape
   rows = np.insert(pixels.reshape(height, -1), 0, 0, axis=1)  # No filter.
   header = struct.pack('>2I5B', width, height, 8, 2, 0, 0, 0)  # 8-bit RGB.
-  chunks = ((b'IHDR', header), (b'IDAT', zlib.compress(rows)), (b'IEND', b''))
+  chunks = (
+    (b'IHDR', header),
+    (b'IDAT', zlib.compress(rows.tobytes())),
+    (b'IEND', b''),
+  )
   out = [b'\x89PNG\r\n\x1a\n']
   for kind, body in chunks:
     check = zlib.crc32(kind + body)

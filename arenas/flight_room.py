@@ -6,16 +6,14 @@ import math
 from dm_control import composer, mjcf
 import numpy as np
 
-from waggle_tasks import appearance
-from waggle_tasks.arenas import clutter, layouts, scenery, views
+from waggle_tasks import appearance, runtime
+from waggle_tasks.arenas import bounds, clutter, layouts, scenery, views
 from waggle_tasks.arenas import sun as sun_lib
 from waggle_tasks.protocol import timing
 
-# Flat floor for twenty observers in a line 0.6 m apart, or on an arc of 3 m,
-# that then fly the longest message, 0.8 m; and the wall's curve around it.
-HALF_WIDTH_M = 8.7
-HALF_DEPTH_M = 6.8
-HEIGHT_M = 7.0
+runtime.require_versions()
+
+# Of the wall that is seen, where it meets the floor and in its corners.
 _CURVE_M, _CORNER_M = 2.2, 2.6
 
 # Tiles are two units of displacement apart (paper, equation 2): a message of
@@ -42,26 +40,6 @@ _LIGHTS = {
   'fill': ((-1.0, 0.10, -0.25), 0.16),
   'bounce': ((0.0, 0.10, 1.0), 0.12),
 }
-
-
-def check_inside(name: str, pose: layouts.Pose) -> None:
-  """Refuses a place outside of the room.
-
-  Args:
-    name: The vehicle's.
-    pose: Its place.
-
-  Raises:
-    layouts.LayoutError: naming the vehicle, the rule and the place.
-  """
-  x_m, y_m, z_m = pose.position_m
-  if not (
-    abs(x_m) < HALF_WIDTH_M and abs(y_m) < HALF_DEPTH_M and 0.0 < z_m < HEIGHT_M
-  ):
-    raise layouts.LayoutError(
-      f'`pose` of {name} must lie in the room, |x| < {HALF_WIDTH_M},'
-      f' |y| < {HALF_DEPTH_M} and 0 < z < {HEIGHT_M} m: got {pose.position_m}'
-    )
 
 
 class FlightRoom(composer.Arena):
@@ -122,7 +100,7 @@ class FlightRoom(composer.Arena):
         f'`name` of a vehicle must be new to the room, which holds {taken}:'
         f' got {name!r}'
       )
-    check_inside(name, pose)
+    bounds.check_inside(name, pose)
     x_m, y_m, _ = pose.position_m
     frame = self.add_free_entity(vehicle)
     frame.pos = pose.position_m
@@ -194,11 +172,17 @@ class FlightRoom(composer.Arena):
       floor.set_attributes(material=material, rgba=_WHITE)
     self._add_walls()
     wall = scenery.studio_wall(
-      HALF_WIDTH_M, HALF_DEPTH_M, HEIGHT_M, _CURVE_M, _CORNER_M
+      bounds.HALF_WIDTH_M,
+      bounds.HALF_DEPTH_M,
+      bounds.HEIGHT_M,
+      _CURVE_M,
+      _CORNER_M,
     )
     self._add_mesh('wall', wall)
-    self._add_mesh('ceiling', scenery.ceiling(HALF_WIDTH_M, HALF_DEPTH_M))
-    high = (0.0, 0.0, HEIGHT_M)
+    self._add_mesh(
+      'ceiling', scenery.ceiling(bounds.HALF_WIDTH_M, bounds.HALF_DEPTH_M)
+    )
+    high = (0.0, 0.0, bounds.HEIGHT_M)
     seen = [
       self._add_drawn('wall', 'wall', _SLATE),
       self._add_drawn('ceiling', 'ceiling', _SLATE, high),
@@ -218,11 +202,11 @@ class FlightRoom(composer.Arena):
   def _add_walls(self) -> None:
     """Adds what vehicles bump into; what is seen curves inside of it."""
     for name, axis, distance_m in (
-      ('east', (-1, 0, 0), HALF_WIDTH_M),
-      ('west', (1, 0, 0), HALF_WIDTH_M),
-      ('north', (0, -1, 0), HALF_DEPTH_M),
-      ('south', (0, 1, 0), HALF_DEPTH_M),
-      ('up', (0, 0, -1), HEIGHT_M),
+      ('east', (-1, 0, 0), bounds.HALF_WIDTH_M),
+      ('west', (1, 0, 0), bounds.HALF_WIDTH_M),
+      ('north', (0, -1, 0), bounds.HALF_DEPTH_M),
+      ('south', (0, 1, 0), bounds.HALF_DEPTH_M),
+      ('up', (0, 0, -1), bounds.HEIGHT_M),
     ):
       self._mjcf_root.worldbody.add(
         'geom',

@@ -136,7 +136,8 @@ def crossed_discs(arm_m: float, radius_m: float) -> Mesh:
     * np.array([(1, 1, 0), (-1, 1, 0), (-1, -1, 0), (1, -1, 0)])
   )
   ways = middles_m / arm_m
-  corners, faces = [], []
+  corners: list[np.ndarray] = []
+  faces: list[np.ndarray] = []
   for middle, way in zip(middles_m, ways, strict=True):
     faces.append(fan + sum(map(len, corners)))
     corners.append(radius_m * _circle(sides) + middle)

@@ -14,7 +14,10 @@ import math
 from dm_control import mjcf
 import numpy as np
 
+from waggle_tasks import runtime
 from waggle_tasks.entities import shapes
+
+runtime.require_versions()
 
 ARM_M = 0.046  # MuJoCo Menagerie, bitcraze_crazyflie_2: centre to motor axis.
 ROTOR_RADIUS_M = 0.0225

@@ -13,7 +13,6 @@ import numpy as np
 from waggle_tasks.entities import crazyflie
 from waggle_tasks.protocol import minimum_jerk, timing
 
-RADIUS_M = 0.3  # Of the circle that it flies on.
 # Moves take about as long as gestures, rests as their pauses, and a move of
 # three quarters of a turn keeps it under 0.7 m/s.
 _MOVE_S, _REST_S = (4.0, 8.0), (2.0, 5.0)
@@ -23,16 +22,20 @@ _TURN_RAD = (0.5 * math.pi, 1.5 * math.pi)
 class Bystander(crazyflie.Crazyflie):
   """Moves along a circle, rests, and moves on; drawn anew in each episode."""
 
-  def _build(self, name: str, middle_m: np.ndarray, spread_m: float) -> None:
+  def _build(  # type: ignore[override]
+    self, name: str, middle_m: np.ndarray, radius_m: float, spread_m: float
+  ) -> None:
     """Builds the model.
 
     Args:
       name: Model name.
       middle_m: (3,) where the middle of its circle is, about.
-      spread_m: How far from there, along each axis, it may be.
+      radius_m: Of that circle.
+      spread_m: How far from its middle's place, along each axis, it may be.
     """
     super()._build(name)
     self._about_m, self._spread_m = middle_m, spread_m
+    self._radius_m = radius_m
 
   def initialize_episode(
     self, physics: mjcf.Physics, random_state: np.random.RandomState
@@ -44,7 +47,7 @@ class Bystander(crazyflie.Crazyflie):
     along = np.array([math.cos(heading_rad), math.sin(heading_rad), 0.0])
     aside = np.array([-along[1], along[0], 0.0]) * math.cos(tilt_rad)
     aside[2] = math.sin(tilt_rad)
-    self._axes_m = RADIUS_M * np.stack([along, aside])  # (2, 3)
+    self._axes_m = self._radius_m * np.stack([along, aside])  # (2, 3)
     self._move_s, self._rest_s = draw(*_MOVE_S), draw(*_REST_S)
     self._turn_rad = draw(*_TURN_RAD) * random_state.choice([-1, 1])
     self._ahead_s = draw(0, self._move_s + self._rest_s)

@@ -56,7 +56,7 @@ class Controller:
     world = root.find('site', 'world') or root.worldbody.add(
       'site', name='world', group=3
     )
-    self._actuators = []
+    self._actuators: list[mjcf.Element] = []
     forces = (SIDEWAYS_N, SIDEWAYS_N, THRUST_N)
     for axis, limits in enumerate(forces):
       self._add(

@@ -11,10 +11,6 @@ import numpy as np
 
 from waggle_tasks.entities import renderer
 
-FOVY_DEG = 60.0  # Paper, section 'Scene, sensors, and information boundaries'.
-# Ahead of the centre of mass, clear of the airframe.
-OFFSET_M = 0.03
-
 # Takes the renderer's own picture, which it must not write to, and returns what
 # comes of it.
 Spoil = Callable[[np.ndarray], np.ndarray]
@@ -42,7 +38,7 @@ class _Shown:
     self._pixels = pixels
 
   def __array__(
-    self, dtype: np.typing.DTypeLike = None, copy: bool | None = None
+    self, dtype: np.typing.DTypeLike | None = None, copy: bool | None = None
   ) -> np.ndarray:
     del dtype, copy
     return self._pixels

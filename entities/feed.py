@@ -14,9 +14,9 @@ _SHAPE = (renderer.HEIGHT, renderer.WIDTH, 3)
 
 @dataclasses.dataclass(eq=False)
 class _Picture:
-  """What the camera took in one frame, once somebody has asked for it."""
+  """What the camera took in one frame, once somebody asks; else empty."""
 
-  pixels: np.ndarray | None = None
+  pixels: np.ndarray = dataclasses.field(default_factory=lambda: np.empty(0))
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -58,8 +58,11 @@ class Feed:
       )
     self._frame = self._exposed_frame = -1
     # What is on its way, the oldest first; the first one never waits.
-    self._sent = collections.deque(maxlen=chosen.late_frames + 1)
-    self._taken = self._delivered = None
+    self._sent: collections.deque[_Message] = collections.deque(
+      maxlen=chosen.late_frames + 1
+    )
+    self._taken = _Picture()
+    self._delivered = _Message(self._taken, 0.0)
 
   def advance(self, time_s: float) -> None:
     """Begins a frame and decides what comes in it.
@@ -74,10 +77,10 @@ class Feed:
       chosen.dropped_share,
     )
     frozen = self._during(chosen.freeze_s, chosen.freeze_length_s, 1)
-    if self._taken is None or not (repeats or frozen):
+    if not (repeats or frozen):
       self._taken = _Picture()
     self._sent.append(_Message(self._taken, time_s))
-    if self._delivered is None or not drops:
+    if not (self._frame and drops):
       self._delivered = self._sent[0]
 
   def image(self, picture: np.ndarray) -> np.ndarray:  # (480, 640, 3) uint8
@@ -87,10 +90,12 @@ class Feed:
       image = picture.copy()
       self._light(image, self._frame)
       self._blur(image)
-      if self._taken.pixels is None:
+      if not self._taken.pixels.size:
         self._read_out(image)
         self._taken.pixels = image
-    return self._delivered.picture.pixels
+    # Of a frame in which nobody asked there is no picture but the present one.
+    come = self._delivered.picture.pixels
+    return come if come.size else self._taken.pixels
 
   @property
   def time_s(self) -> float:

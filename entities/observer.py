@@ -5,9 +5,7 @@ from dm_control.composer.observation import observable
 import numpy as np
 
 from waggle_tasks import sensor as sensor_lib
-from waggle_tasks.entities import crazyflie, eye, feed
-
-CAMERAS = ('incremental', 'full')
+from waggle_tasks.entities import crazyflie, eye, feed, optics
 
 
 class Observer(crazyflie.Crazyflie):
@@ -17,18 +15,18 @@ class Observer(crazyflie.Crazyflie):
     sensor: What spoils its images, from the next episode on.
   """
 
-  def _build(
+  def _build(  # type: ignore[override]
     self,
     name: str = 'observer',
     camera: str = 'incremental',
-    eye_offset_m: float = eye.OFFSET_M,
+    eye_offset_m: float = optics.OFFSET_M,
     sensor: sensor_lib.Sensor = sensor_lib.Sensor(),
   ) -> None:
     """Builds the model.
 
     Args:
       name: Model name, the prefix of everything inside it.
-      camera: One of `CAMERAS`: how its images are rendered.
+      camera: One of `optics.CAMERAS`: how its images are rendered.
       eye_offset_m: How far the eye is ahead of the centre of mass.
       sensor: What spoils its images.
     """
@@ -36,7 +34,7 @@ class Observer(crazyflie.Crazyflie):
     self._incremental = camera == 'incremental'
     self._eye = self.airframe.add(
       'camera', name='eye', pos=(eye_offset_m, 0, 0),
-      xyaxes=(0, -1, 0, 0, 0, 1), fovy=eye.FOVY_DEG,
+      xyaxes=(0, -1, 0, 0, 0, 1), fovy=optics.FOVY_DEG,
     )  # fmt: skip
     self.sensor = sensor
     self._feed: feed.Feed | None = None
@@ -61,7 +59,7 @@ class Observer(crazyflie.Crazyflie):
     self._feed = None
     if not self.sensor.is_clean:
       self._feed = feed.Feed(self.sensor, random_state)
-      self._feed.advance(_time_s(physics))
+      self._feed.advance(float(_time_s(physics)))
 
   def after_step(
     self, physics: mjcf.Physics, random_state: np.random.RandomState
@@ -69,7 +67,7 @@ class Observer(crazyflie.Crazyflie):
     """Brings the feed to the frame that is observed next."""
     del random_state
     if self._feed is not None:
-      self._feed.advance(_time_s(physics))
+      self._feed.advance(float(_time_s(physics)))
 
   @property
   def is_spoilt(self) -> bool:

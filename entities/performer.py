@@ -14,7 +14,7 @@ BRAKE_S = 0.8  # To rest from anywhere in a gesture; under 2 m/s^2.
 class Performer(crazyflie.Crazyflie):
   """Flies gestures in its frontal plane, smoothly, until it is stopped."""
 
-  def _build(self, name: str = 'performer') -> None:
+  def _build(self, name: str = 'performer') -> None:  # type: ignore[override]
     super()._build(name)
     self._schedule = schedule_lib.Schedule(())
     self._stop_s = math.inf

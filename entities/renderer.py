@@ -15,10 +15,12 @@ Anti-aliasing is supersampling: every pixel is the mean of 2 x 2 samples, which
 is deterministic and needs no multisample buffer.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 import contextlib
 import dataclasses
+import functools
 import math
+from typing import Any
 
 import cv2
 from dm_control import mjcf
@@ -44,6 +46,11 @@ _HEADLIGHT = ('ambient', 'diffuse', 'specular')
 _WHOLE = (0, 0, WIDTH, HEIGHT)
 
 
+def _unseen() -> Any:  # noqa: ANN401
+  """What a canvas holds before it shows anything."""
+  return dataclasses.field(default_factory=lambda: np.empty(0))
+
+
 @dataclasses.dataclass(eq=False)
 class _Canvas:
   """One camera's picture and what it shows.
@@ -62,15 +69,15 @@ class _Canvas:
 
   pixels: np.ndarray
   room: np.ndarray
-  poses: np.ndarray | None = None
-  places: tuple[np.ndarray, np.ndarray] | None = None
-  eye: np.ndarray | None = None
-  boxes: np.ndarray | None = None
+  poses: np.ndarray = _unseen()
+  places: tuple[np.ndarray, np.ndarray] = (np.empty(0), np.empty(0))
+  eye: np.ndarray = _unseen()
+  boxes: np.ndarray = _unseen()
   shown: dict[windows.Window, frozenset[int]] = dataclasses.field(
     default_factory=dict
   )
   looks: int = 0
-  lens: tuple[float, float, bool] | None = None
+  lens: tuple[float, float, bool] = (0.0, 0.0, False)
 
 
 class Renderer:
@@ -101,7 +108,6 @@ class Renderer:
     self._perturb = mujoco.MjvPerturb()
     self._camera = mujoco.MjvCamera()
     self._camera.type = mujoco.mjtCamera.mjCAMERA_FIXED
-    self._frame: framebuffer.Framebuffer | None = None
     self._canvases: dict[int, _Canvas] = {}
     headlight = model.vis.headlight
     self._look_fields = [
@@ -129,6 +135,11 @@ class Renderer:
     corners = [part.corners_m for part in parts]
     self._corners_m = np.reshape(corners, (-1, 8, 3))  # (M, 8, 3)
     self._spills = bool(model.mat_reflectance.any())
+
+  @functools.cached_property
+  def _frame(self) -> framebuffer.Framebuffer:
+    """Made when the GL context is current for the first time."""
+    return framebuffer.Framebuffer(_SAMPLES * WIDTH, _SAMPLES * HEIGHT)
 
   def image(self, camera_id: int, incremental: bool = True) -> np.ndarray:
     """The camera's picture now.
@@ -206,15 +217,15 @@ class Renderer:
     self, camera_id: int, canvas: _Canvas, moved: np.ndarray, anew: bool
   ) -> None:
     """Brings a picture up to date; needs the current GL context."""
-    if self._frame is None:
-      self._frame = framebuffer.Framebuffer(_SAMPLES * WIDTH, _SAMPLES * HEIGHT)
     self._camera.fixedcamid = camera_id
-    wanted = {}
+    wanted: dict[windows.Window, frozenset[int]] = {}
     if not self._spills:
-      wanted = windows.merge({i: tuple(canvas.boxes[i]) for i in self._mobile})
+      wanted = windows.merge(
+        {int(i): tuple(canvas.boxes[i]) for i in self._mobile}
+      )
     with self._as_shown(camera_id, canvas):
       if anew:
-        hidden = [] if self._spills else self._mobile
+        hidden = self._mobile[:0] if self._spills else self._mobile
         self._draw(canvas, _WHOLE, canvas.room, hidden)
         canvas.pixels[:] = canvas.room
         canvas.shown = {}
@@ -228,7 +239,7 @@ class Renderer:
         rows, columns = windows.slices(window)
         canvas.pixels[rows, columns] = canvas.room[rows, columns]
       for window in wanted.keys() - kept.keys():
-        self._draw(canvas, window, canvas.pixels, [])
+        self._draw(canvas, window, canvas.pixels, self._mobile[:0])
     canvas.shown = wanted
 
   @contextlib.contextmanager
@@ -252,9 +263,9 @@ class Renderer:
     canvas: _Canvas,
     window: windows.Window,
     pixels: np.ndarray,
-    hidden: Sequence[int],
+    hidden: np.ndarray,
   ) -> None:
-    """Draws a window of a picture into `pixels`, without hidden parts."""
+    """Draws a window of a picture into `pixels`, without hidden parts, (K,)."""
     self._update_scene(canvas, window, hidden)
     width, height = windows.size(window)
     context = self._physics.contexts.mujoco.ptr
@@ -266,7 +277,7 @@ class Renderer:
     pixels[windows.slices(window)] = means[::-1]  # OpenGL counts from below.
 
   def _update_scene(
-    self, canvas: _Canvas, window: windows.Window, hidden: Sequence[int]
+    self, canvas: _Canvas, window: windows.Window, hidden: np.ndarray
   ) -> None:
     """Fills the scene with what the window can show, seen through it."""
     seen = windows.touching(window, canvas.boxes)

@@ -51,7 +51,7 @@ def find(
   for geoms in groups:
     body = int(weld[geoms[0]])
     to_body = data.xmat[body].reshape(3, 3)
-    points = np.concatenate([_points(model, data, geom) for geom in geoms])
+    points = np.concatenate([_points(model, data, int(geom)) for geom in geoms])
     local = (points - data.xpos[body]) @ to_body
     low, high = local.min(axis=0), local.max(axis=0)
     parts.append(Part(body, geoms, np.where(_SIGNS < 0, low, high)))

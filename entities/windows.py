@@ -1,6 +1,7 @@
 """Rectangles of a picture: left, top, right and bottom edge in pixels."""
 
 from collections.abc import Hashable, Mapping, Sequence
+from typing import TypeVar
 
 import numpy as np
 
@@ -12,6 +13,7 @@ _EDGES = np.array(
 _MARGINS_PX = np.array([-1, -1, 2, 2])
 
 Window = tuple[int, int, int, int]
+Name = TypeVar('Name', bound=Hashable)
 
 
 def touch(a: Sequence[int], b: Sequence[int]) -> bool:
@@ -41,8 +43,8 @@ def size(window: Window) -> tuple[int, int]:
 
 
 def merge(
-  boxes: Mapping[Hashable, Sequence[int]],
-) -> dict[Window, frozenset[Hashable]]:
+  boxes: Mapping[Name, Sequence[int]],
+) -> dict[Window, frozenset[Name]]:
   """Disjoint windows that hold boxes, which are merged where they overlap.
 
   Args:
@@ -51,9 +53,10 @@ def merge(
   Returns:
     The names that each window holds.
   """
-  out: dict[Window, frozenset[Hashable]] = {}
+  out: dict[Window, frozenset[Name]] = {}
   for name, box in boxes.items():
-    window, names = tuple(map(int, box)), frozenset([name])
+    left, top, right, bottom = map(int, box)
+    window, names = (left, top, right, bottom), frozenset([name])
     if not touch(window, window):
       continue
     while near := [other for other in out if touch(other, window)]:

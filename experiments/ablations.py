@@ -6,10 +6,11 @@ final confirmation (section 'Limitations and next simulation experiments').
 
 from collections.abc import Mapping, Sequence
 import dataclasses
+from typing import Any
 
-from waggle_tasks.experiments import evaluator, table, variant_runner
+from waggle_tasks.experiments import table, variant_runner, verdicts
 
-Row = Mapping[str, object]
+Row = Mapping[str, Any]
 
 LEGEND = (
   'messages: read as sent in the standard suite; groups: its broadcasts that'
@@ -73,7 +74,7 @@ class _Counts:
   @classmethod
   def of(cls, rows: Sequence[Row]) -> '_Counts':
     outcomes = [
-      evaluator.Outcome(**fields) for row in rows for fields in row['outcomes']
+      verdicts.Outcome(**fields) for row in rows for fields in row['outcomes']
     ]
     return cls(
       sum(row['correct'] for row in rows),

@@ -1,18 +1,18 @@
 """Reads run folders back: everything that a run has left behind."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 import dataclasses
 import json
 import math
 import pathlib
+from typing import Any
 import zipfile
 
 import numpy as np
 
 from waggle_tasks import errors
 from waggle_tasks.agents import observer_agent, receiver, recogniser
-from waggle_tasks.experiments import rollout as rollout_lib
-from waggle_tasks.experiments import story
+from waggle_tasks.experiments import episode, story
 from waggle_tasks.experiments import traces as traces_lib
 from waggle_tasks.protocol import agreement as agreement_lib
 from waggle_tasks.protocol import (
@@ -42,8 +42,8 @@ class Run:
     config: config.json.
     result: result.json.
     provenance: provenance.json.
-    events: By observer name, as in `rollout.Rollout`.
-    traces: By observer name, as in `rollout.Rollout`.
+    events: By observer name, as in `episode.Rollout`.
+    traces: By observer name, as in `episode.Rollout`.
     times_s: (T,) one time for each frame.
     positions_m: By vehicle name, (T, 3) true positions.
   """
@@ -52,7 +52,7 @@ class Run:
   config: dict
   result: dict
   provenance: dict
-  events: dict[str, tuple[rollout_lib.Event, ...]]
+  events: dict[str, tuple[episode.Event, ...]]
   traces: dict[str, traces_lib.Trace]
   times_s: np.ndarray
   positions_m: dict[str, np.ndarray]
@@ -151,7 +151,7 @@ def read_agreement(config: Mapping) -> agreement_lib.Agreement:
 
 def read_events(
   path: pathlib.Path, names: list[str]
-) -> dict[str, tuple[rollout_lib.Event, ...]]:
+) -> dict[str, tuple[episode.Event, ...]]:
   """Reads an event log.
 
   Args:
@@ -161,7 +161,7 @@ def read_events(
   Raises:
     ArchiveError: naming the line that is damaged.
   """
-  events = {name: [] for name in names}
+  events: dict[str, list[episode.Event]] = {name: [] for name in names}
   try:
     lines = path.read_text(encoding='utf-8').splitlines()
   except OSError as error:
@@ -169,7 +169,7 @@ def read_events(
   for number, line in enumerate(lines, 1):
     try:
       row = json.loads(line)
-      events[row.pop('observer')].append(_MAKERS[row.pop('kind')](**row))
+      events[row.pop('observer')].append(_MAKERS[row.pop('kind')](row))
     except (ValueError, KeyError, TypeError) as error:
       raise ArchiveError(
         f'{path} is damaged in line {number}: {error}'
@@ -177,7 +177,7 @@ def read_events(
   return {name: tuple(each) for name, each in events.items()}
 
 
-def _event(**row: object) -> receiver.Event:
+def _event(row: dict[str, Any]) -> receiver.Event:
   row['symbol'], row['state'] = Symbol(row['symbol']), frame.State(row['state'])
   if row['message'] is not None:
     row['message'] = payload.Payload.from_bits(row['message'])
@@ -189,7 +189,7 @@ def _event(**row: object) -> receiver.Event:
   return receiver.Event(**row)
 
 
-def _navigation(**row: object) -> observer_agent.Navigation:
+def _navigation(row: dict[str, Any]) -> observer_agent.Navigation:
   row['deed'] = observer_agent.Deed(row['deed'])
   row['target_m'] = tuple(row['target_m'])
   row['payload'] = payload.Payload.from_bits(row['payload'])
@@ -197,16 +197,17 @@ def _navigation(**row: object) -> observer_agent.Navigation:
 
 
 # By the `kind` of a line, see `records.event_lines`.
-_MAKERS = {
+_MAKERS: dict[str, Callable[[dict[str, Any]], episode.Event]] = {
   'event': _event,
   'navigation': _navigation,
-  'refusal': safety.Refusal,
+  'refusal': lambda row: safety.Refusal(**row),
 }
 
 
-def save_positions(path: pathlib.Path, rollout: rollout_lib.Rollout) -> None:
+def save_positions(path: pathlib.Path, rollout: episode.Rollout) -> None:
   """Writes every vehicle's way; equal ways give equal bytes."""
-  np.savez_compressed(path, times_s=rollout.times_s, **rollout.positions_m)
+  arrays: dict[str, Any] = {'times_s': rollout.times_s, **rollout.positions_m}
+  np.savez_compressed(path, **arrays)
 
 
 def _positions(path: pathlib.Path) -> dict[str, np.ndarray]:

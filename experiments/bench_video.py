@@ -18,15 +18,12 @@ from absl import flags
 from waggle_tasks import scenario
 from waggle_tasks.experiments import (
   capture,
-  evaluator,
   launch,
   provenance,
   records,
   table,
 )
-from waggle_tasks.experiments import rollout as rollout_lib
 from waggle_tasks.experiments.pages import document
-from waggle_tasks.experiments.video import film
 
 _REPEATS = flags.DEFINE_integer(
   'repeats', 3, 'How often each is run.', lower_bound=1
@@ -63,6 +60,10 @@ def main(argv: Sequence[str]) -> int:
 
 def plain(scene: scenario.Scenario) -> float:
   """Seconds that a run takes that leaves nothing."""
+  # Imported here: help needs no simulator.
+  from waggle_tasks.experiments import evaluator
+  from waggle_tasks.experiments import rollout as rollout_lib
+
   began_s = time.perf_counter()
   evaluator.evaluate(scene, rollout_lib.run(scene, 'klt'))
   return time.perf_counter() - began_s
@@ -73,6 +74,11 @@ def filmed(scene: scenario.Scenario) -> tuple[float, dict[str, int]]:
 
   The raw captures are made in a run of their own.
   """
+  # Imported here: help needs no simulator.
+  from waggle_tasks.experiments import evaluator
+  from waggle_tasks.experiments import rollout as rollout_lib
+  from waggle_tasks.experiments.video import film
+
   with tempfile.TemporaryDirectory() as name:
     folder = pathlib.Path(name)
     began_s = time.perf_counter()

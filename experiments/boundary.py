@@ -12,16 +12,19 @@ when not.
 from collections.abc import Callable, Sequence
 import dataclasses
 import sys
+from typing import TYPE_CHECKING, Any
 
 from absl import flags
-import dm_env
 import numpy as np
 import tqdm
 
-from waggle_tasks import errors, registry, scenario
+from waggle_tasks import errors, scenario
 from waggle_tasks.agents import observer_agent, receiver, receivers
 from waggle_tasks.experiments import launch, scenario_flags, table
 from waggle_tasks.protocol import checks, timing
+
+if TYPE_CHECKING:
+  import dm_env
 
 scenario_flags.define()
 _RECEIVER = flags.DEFINE_string(
@@ -44,6 +47,9 @@ class _World:
   """An environment, its team, and what the team is shown instead."""
 
   def __init__(self, scene: scenario.Scenario, receiver_name: str) -> None:
+    # Imported here: help needs no simulator.
+    from waggle_tasks import registry
+
     self.team = observer_agent.Team(
       scene.observers, receiver_name, scene.agreement
     )
@@ -82,6 +88,8 @@ class _Probe:
   def __init__(
     self, scene: scenario.Scenario, receiver_name: str, index: int
   ) -> None:
+    # Imported here: help needs no simulator.
+
     self.team = observer_agent.Team(
       scene.observers, receiver_name, scene.agreement
     )
@@ -192,12 +200,15 @@ def main(argv: Sequence[str]) -> int:
 
 
 def _swap(observers: int) -> tuple[int, int]:
-  numbers = [int(n) if n.isdecimal() else n for n in _SWAP.value]
+  # Words that are no numbers are refused by the check below.
+  numbers: list[Any] = [int(n) if n.isdecimal() else n for n in _SWAP.value]
   if len(numbers) != 2 or numbers[0] == numbers[1]:
     raise SwapError(f'`swap` must name two observers: got {_SWAP.value}')
-  for number in numbers:
+  one, other = (
     checks.integer('swap', number, 1, observers, SwapError)
-  return numbers[0] - 1, numbers[1] - 1
+    for number in numbers
+  )
+  return one - 1, other - 1
 
 
 def _message(events: Sequence[receiver.Event]) -> str:

@@ -12,29 +12,31 @@ import contextlib
 import datetime
 import pathlib
 import sys
+from typing import TYPE_CHECKING
 
 from absl import flags
-from dm_control import composer
-import dm_env
 
 from waggle_tasks import scenario
 from waggle_tasks.agents import observer_agent, receivers
 from waggle_tasks.experiments import (
-  evaluator,
+  episode,
   job_progress,
   launch,
   nulls,
-  outside,
   provenance,
   recording_flags,
   records,
   scenario_flags,
   source_files,
   table,
+  verdicts,
 )
-from waggle_tasks.experiments import rollout as rollout_lib
 from waggle_tasks.experiments.pages import document
 from waggle_tasks.protocol import timing
+
+if TYPE_CHECKING:
+  from dm_control import composer
+  import dm_env
 
 scenario_flags.define()
 recording_flags.define()
@@ -53,6 +55,9 @@ def main(argv: Sequence[str]) -> int:
   scene = scenario_flags.read()
   receivers.make(_RECEIVER.value, scene.agreement)
   nulls.check([scene], _RECEIVER.value)
+  # Imported here: help needs no simulator.
+  from waggle_tasks.experiments import evaluator, outside
+
   command = provenance.command_line('broadcast', launch.given_flags())
   try:
     foreign = outside.paths(_RECEIVER.value, [scene])
@@ -88,9 +93,11 @@ def _folder() -> Iterator[tuple[pathlib.Path, pathlib.Path]]:
 def _roll(
   scene: scenario.Scenario,
   receiver_name: str,
-  watchers: Sequence[rollout_lib.Watcher],
-) -> rollout_lib.Rollout:
+  watchers: Sequence[episode.Watcher],
+) -> episode.Rollout:
   """Runs the episode behind a progress bar of simulated seconds."""
+  from waggle_tasks.experiments import rollout as rollout_lib
+
   form = '{desc}: {percentage:3.0f}%|{bar}| {n:.0f}/{total:.0f} s'
   with job_progress.seconds_bar(
     timing.frames(scene.episode_s), desc='broadcast',
@@ -98,8 +105,8 @@ def _roll(
   ) as bar:  # fmt: skip
 
     def watch(
-      environment: composer.Environment,
-      timestep: dm_env.TimeStep,
+      environment: 'composer.Environment',
+      timestep: 'dm_env.TimeStep',
       team: observer_agent.Team,
     ) -> None:
       del environment, team
@@ -109,7 +116,7 @@ def _roll(
     return rollout_lib.run(scene, receiver_name, [*watchers, watch])
 
 
-def report(scene: scenario.Scenario, verdict: evaluator.Verdict) -> str:
+def report(scene: scenario.Scenario, verdict: verdicts.Verdict) -> str:
   """The table of observers and the verdict, for people."""
   rows = [
     (

@@ -16,15 +16,17 @@ import math
 import pathlib
 import struct
 import types
-from typing import BinaryIO
+from typing import TYPE_CHECKING, BinaryIO
 import zlib
 
-from dm_control import composer
-import dm_env
 import numpy as np
 
 from waggle_tasks import errors
 from waggle_tasks.agents import observer_agent
+
+if TYPE_CHECKING:
+  from dm_control import composer
+  import dm_env
 
 FOLDER = 'raw'
 SUFFIX = '.capture'
@@ -200,8 +202,8 @@ class Recorder:
 
   def __call__(
     self,
-    environment: composer.Environment,
-    timestep: dm_env.TimeStep,
+    environment: 'composer.Environment',
+    timestep: 'dm_env.TimeStep',
     team: observer_agent.Team,
   ) -> None:
     """Captures the images of this frame."""
@@ -215,7 +217,7 @@ class Recorder:
     ):
       time_s = float(observation['time_s'])
       # Navigating, it reads none; an image that comes again, it passes over.
-      if agent.receiver.track.time_s == time_s and writer.last_s < time_s:
+      if agent.read_s == time_s and writer.last_s < time_s:
         writer.write(observation['camera'], time_s)
 
 

@@ -4,13 +4,14 @@ from collections.abc import Container, Mapping
 import dataclasses
 import json
 import math
+from typing import Any
 
 from waggle_tasks import scenario
 from waggle_tasks.experiments import scenario_fields
 from waggle_tasks.protocol import gestures
 from waggle_tasks.protocol.symbols import Symbol
 
-Fields = Mapping[str, object]
+Fields = Mapping[str, Any]
 
 
 def of(scene: scenario.Scenario, told: Container[str] = ()) -> list[str]:
@@ -25,7 +26,8 @@ def of(scene: scenario.Scenario, told: Container[str] = ()) -> list[str]:
 
 def among(fields: Fields, told: Container[str] = ()) -> list[str]:
   """The same, of the fields of a scenario as config.json has them."""
-  usual, out = _plain(scenario.Scenario()), {}
+  usual = _plain(scenario.Scenario())
+  out: dict[str, Any] = {}
   for name, value in fields.items():
     if value == usual.get(name):
       continue
@@ -48,7 +50,7 @@ def _text(value: object) -> str:
   return f'{value:g}' if isinstance(value, float) else str(value)
 
 
-def _plain(scene: scenario.Scenario) -> dict[str, object]:
+def _plain(scene: scenario.Scenario) -> dict[str, Any]:
   """Its fields as JSON holds them."""
   fields = dataclasses.asdict(scene)
   if not isinstance(scene.layout, str):
@@ -56,14 +58,14 @@ def _plain(scene: scenario.Scenario) -> dict[str, object]:
   return json.loads(json.dumps(fields))
 
 
-def _units(value: Fields, usual: Fields) -> dict[str, object]:
+def _units(value: Fields, usual: Fields) -> dict[str, Any]:
   out = {k: v for k, v in value.items() if v != usual[k]}
   if 'heading_step_rad' in out:
     out['heading_step_deg'] = math.degrees(out.pop('heading_step_rad'))
   return out
 
 
-def _codebook(value: Fields) -> dict[str, object]:
+def _codebook(value: Fields) -> dict[str, Any]:
   """The numbers that make a codebook of Vs, or that it is another."""
   made = {each['symbol']: each for each in value['gestures']}
   width_m = max(x for x, _ in made[Symbol.END]['corners_m'])

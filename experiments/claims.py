@@ -49,7 +49,7 @@ def main(argv: Sequence[str]) -> int:
   for name in _ONLY.value:
     checks.choice('only', name, names, ClaimError)
   library = documents.read(pathlib.Path(_ROOT.value))
-  workers, verdicts = launch.worker_count(_WORKERS), []
+  workers, verdicts = launch.worker_count('workers', _WORKERS.value), []
   for name in _ONLY.value or names:
     for found in _found(name, library, workers):
       verdicts.append(found.verdict)

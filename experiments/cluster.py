@@ -16,10 +16,14 @@ import re
 import socket
 import threading
 import time
+from typing import TYPE_CHECKING
 import uuid
 
 from waggle_tasks import errors
 from waggle_tasks.experiments import dask_probe, pool, provenance
+
+if TYPE_CHECKING:
+  import distributed
 
 EXTRA = "pip install 'waggle-tasks[cluster]'"
 _CONNECT_S = 10.0
@@ -117,11 +121,11 @@ def _wait_for_workers(place: str) -> None:
 
 def _run(
   jobs: Sequence[pool.Job],
-  client: object,
+  client: 'distributed.Client',
   place: str,
   ours: tuple[str, dict[str, str]],
 ) -> Iterator[pool.Done]:
-  news = queue.SimpleQueue()
+  news: queue.SimpleQueue[distributed.Future] = queue.SimpleQueue()
   run_name = uuid.uuid4().hex  # Others may fly jobs of the same names.
   named = {f'{run_name} {job.name}': job for job in jobs}
   futures = [
@@ -134,11 +138,14 @@ def _run(
     future.add_done_callback(news.put)
   for _ in futures:
     future = _next(news, place)
-    yield pool.Done(named[future.key], _result(future, named[future.key]))
+    job = named[str(future.key)]
+    yield pool.Done(job, _result(future, job))
     future.release()
 
 
-def _next(news: queue.SimpleQueue, place: str) -> object:
+def _next(
+  news: queue.SimpleQueue['distributed.Future'], place: str
+) -> 'distributed.Future':
   """The next future that is done; ends when nobody works on it any more."""
   seen_s = time.monotonic()
   while True:
@@ -161,7 +168,7 @@ def _gone(place: str, reason: str) -> ClusterError:
   )
 
 
-def _result(future: object, job: pool.Job) -> object:
+def _result(future: 'distributed.Future', job: pool.Job) -> object:
   import distributed
 
   if future.cancelled():  # With the connection to the scheduler.

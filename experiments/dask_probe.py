@@ -7,6 +7,10 @@ anything else says for lengths of messages.
 import asyncio
 import json
 import pathlib
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+  from distributed import comm
 
 
 def ask(address: str, limit_s: float) -> dict[str, dict]:
@@ -74,6 +78,6 @@ async def _ask(address: str, limit_s: float) -> dict[str, dict]:
   return {'workers': workers, 'packages': packages}
 
 
-async def _send(link: object, operation: str) -> dict:
+async def _send(link: 'comm.Comm', operation: str) -> dict:
   await link.write({'op': operation, 'reply': True})
   return await link.read()

@@ -15,12 +15,13 @@ import contextlib
 import math
 import pathlib
 import sys
+from typing import Any
 
 from absl import flags
 
 from waggle_tasks import errors
 from waggle_tasks.agents import config
-from waggle_tasks.entities import eye
+from waggle_tasks.entities import optics
 from waggle_tasks.experiments import (
   archive,
   capture,
@@ -64,7 +65,7 @@ _FOVY_DEG = flags.DEFINE_float(
   'fovy_deg',
   None,
   'Vertical field of view of the whole picture, in degrees. Unset, and without'
-  f' --focal_px, {eye.FOVY_DEG:g}.',
+  f' --focal_px, {optics.FOVY_DEG:g}.',
 )
 _ANNOTATE = flags.DEFINE_string(
   'annotate', None, 'Video to write that shows what the receiver saw.'
@@ -117,10 +118,10 @@ def _folder(folder: pathlib.Path) -> int:
 def _video(path: pathlib.Path) -> int:
   """Reads a recording."""
   names = list(dict.fromkeys(_RECEIVER.value or ['klt']))
-  part = recordings.Part(
-    _START.value, _END.value, _numbers(_ROI, 4, int),
-    _numbers(_ANCHOR, 2, float), _SPEED.value,
-  )  # fmt: skip
+  # Their counts were checked.
+  roi: Any = _numbers(_ROI, 4, int)
+  anchor: Any = _numbers(_ANCHOR, 2, float)
+  part = recordings.Part(_START.value, _END.value, roi, anchor, _SPEED.value)
   with contextlib.ExitStack() as stack:
     recording = stack.enter_context(recordings.Recording(path, _FPS.value))
     focal_px = _focal_px(recording.height)
@@ -183,7 +184,7 @@ def _focal_px(height: int) -> float:
   if _FOCAL_PX.value is not None:
     checks.number('focal_px', _FOCAL_PX.value, 1.0, 1e5, DecodeError)
     return _FOCAL_PX.value
-  fovy_deg = eye.FOVY_DEG if _FOVY_DEG.value is None else _FOVY_DEG.value
+  fovy_deg = optics.FOVY_DEG if _FOVY_DEG.value is None else _FOVY_DEG.value
   checks.number('fovy_deg', fovy_deg, 1.0, 170.0, DecodeError)
   return height / 2 / math.tan(math.radians(fovy_deg) / 2)
 

@@ -24,8 +24,9 @@ _RIVALS = {
     'opencv-contrib-python-headless',
   ),
 }  # fmt: skip
-# Importing it opens GL, which may hang: it is asked once it was imported.
-_OPENS_GL = 'mujoco'
+# Importing these may open GL, which may fail or hang: they are asked once they
+# were imported.
+_OPEN_GL = ('mujoco', 'OpenGL')
 
 
 class DependencyError(errors.WaggleError):
@@ -72,7 +73,7 @@ def version(name: str) -> str | None:
   """
   said = runtime.installed(name)
   home = module(name)
-  if home == _OPENS_GL and home not in sys.modules:
+  if home in _OPEN_GL and home not in sys.modules:
     return said
   try:
     found = importlib.import_module(home)

@@ -3,10 +3,11 @@
 import collections
 from collections.abc import Mapping, Sequence
 import dataclasses
+from typing import Any
 
 from waggle_tasks.experiments import sweep_cases
 
-Row = Mapping[str, object]
+Row = Mapping[str, Any]
 
 _DOWN, _ACROSS = ('distance_m',), ('bearing_deg', 'half_span_deg')
 
@@ -56,7 +57,7 @@ class Panel:
     cells: The results by the values of `down` and `across`.
   """
 
-  fixed: Mapping[str, object]
+  fixed: Mapping[str, Any]
   down: str | None
   across: str | None
   downs: Sequence[object]
@@ -145,7 +146,7 @@ def panels(rows: Sequence[Row]) -> list[Panel]:
   ]  # fmt: skip
 
 
-def _levels(rows: Sequence[Row], name: str | None) -> list[object]:
+def _levels(rows: Sequence[Row], name: str | None) -> list[Any]:
   """A factor's values: numbers in their order, others as they come."""
   levels = list(dict.fromkeys(value(row, name) for row in rows))
   numbers = all(isinstance(level, (int, float)) for level in levels)
@@ -158,7 +159,7 @@ def _grouped(
   levels: Sequence[Sequence[object]],
 ) -> dict[tuple, list[Row]]:
   """Rows by their values of some factors, in the order of the levels."""
-  groups = {}
+  groups: dict[tuple, list[Row]] = {}
   for row in rows:
     groups.setdefault(tuple(value(row, n) for n in names), []).append(row)
   places = [{level: n for n, level in enumerate(each)} for each in levels]

@@ -6,15 +6,14 @@ purpose without the code that the navigators use.
 """
 
 from collections.abc import Sequence
-import dataclasses
 import math
+from typing import Any
 
 import numpy as np
 
 from waggle_tasks import scenario
 from waggle_tasks.agents import observer_agent, receiver
-from waggle_tasks.experiments import reasons
-from waggle_tasks.experiments import rollout as rollout_lib
+from waggle_tasks.experiments import episode, reasons, verdicts
 from waggle_tasks.protocol import flight, timing
 from waggle_tasks.tasks import progress, safety
 
@@ -22,76 +21,6 @@ from waggle_tasks.tasks import progress, safety
 # alphabet and message framing').
 NUM_EVENTS = 17
 NUM_NULLS = 9
-_EARLY = 'premature motion'
-
-
-@dataclasses.dataclass(frozen=True)
-class Outcome:
-  """One observer's episode.
-
-  Attributes:
-    observer: Its name.
-    expected: The bits that it should have read, or None.
-    decoded: The bits that it read, or None.
-    end_s: When it recognised the END of that message.
-    final_null_s: When it confirmed the final null.
-    start_s: When its navigation began.
-    arrival_s: When it had stood at the place that was sent for 0.4 s.
-    error_m: How far from that place it was at the last frame.
-    hold_s: How long it stayed there after arriving.
-    failures: Every check that failed, with the reason; empty is a pass.
-    diagnosis: Where reading failed, for one without a message.
-  """
-
-  observer: str
-  expected: str | None
-  decoded: str | None = None
-  end_s: float | None = None
-  final_null_s: float | None = None
-  start_s: float | None = None
-  arrival_s: float | None = None
-  error_m: float | None = None
-  hold_s: float | None = None
-  failures: tuple[str, ...] = ()
-  diagnosis: str = ''
-
-  @property
-  def correct(self) -> bool:
-    """Whether it read what was sent to it."""
-    return self.expected is not None and self.decoded == self.expected
-
-  @property
-  def wrong(self) -> bool:
-    """Whether it read a message that was not sent to it."""
-    return self.decoded not in (None, self.expected)
-
-  @property
-  def unauthorised(self) -> bool:
-    """Whether it left its place without the message that was sent to it."""
-    early = any(each.startswith(_EARLY) for each in self.failures)
-    return early or (self.start_s is not None and not self.correct)
-
-
-@dataclasses.dataclass(frozen=True)
-class Verdict:
-  """The whole group's episode.
-
-  Attributes:
-    outcomes: One for each observer.
-    passed: Whether no check of any observer failed.
-  """
-
-  outcomes: tuple[Outcome, ...]
-
-  @property
-  def passed(self) -> bool:
-    """Whether no check of any observer failed."""
-    return not any(outcome.failures for outcome in self.outcomes)
-
-  @property
-  def correct(self) -> int:
-    """How many observers read what was sent to them."""
-    return sum(outcome.correct for outcome in self.outcomes)
 
 
 def expected_bits(scene: scenario.Scenario, number: int) -> str | None:
@@ -116,64 +45,61 @@ def expected_displacement_m(scene: scenario.Scenario) -> np.ndarray:
   return forward * np.array([-math.sin(turn_rad), math.cos(turn_rad), 0.0])
 
 
-def evaluate(scene: scenario.Scenario, rollout: rollout_lib.Rollout) -> Verdict:
+def evaluate(
+  scene: scenario.Scenario, rollout: episode.Rollout
+) -> verdicts.Verdict:
   """Scores every observer of an episode."""
   outcomes = []
   for number in range(1, scene.observers + 1):
     name = f'observer_{number}'
     expected = expected_bits(scene, number)
-    judge = _judge_waiting if expected is None else _judge_reading
-    outcomes.append(judge(scene, rollout, name, expected))
-  return Verdict(tuple(outcomes))
+    if expected is None:
+      outcomes.append(_judge_waiting(rollout, name))
+    else:
+      outcomes.append(_judge_reading(scene, rollout, name, expected))
+  return verdicts.Verdict(tuple(outcomes))
 
 
-def _judge_waiting(
-  scene: scenario.Scenario,
-  rollout: rollout_lib.Rollout,
-  name: str,
-  expected: None,
-) -> Outcome:
+def _judge_waiting(rollout: episode.Rollout, name: str) -> verdicts.Outcome:
   """An observer that must neither read a message nor move."""
-  del scene
   failures = _contact(rollout, name)
-  message = _message(rollout.events[name])
-  if message is not None:
-    failures.append(f'message: read {message.message.bits}, nothing was sent')
+  _, decoded = _message(rollout.events[name])
+  if decoded is not None:
+    failures.append(f'message: read {decoded}, nothing was sent')
   start_s = _start_s(rollout.events[name])
   if start_s is not None:
     failures.append(f'navigation: started at {start_s:.2f} s')
   failures += _early_motion(rollout, name, math.inf)
-  decoded = message.message.bits if message else None
-  return Outcome(
-    name, expected, decoded, start_s=start_s, failures=tuple(failures)
+  return verdicts.Outcome(
+    name, None, decoded, start_s=start_s, failures=tuple(failures)
   )
 
 
 def _judge_reading(
   scene: scenario.Scenario,
-  rollout: rollout_lib.Rollout,
+  rollout: episode.Rollout,
   name: str,
   expected: str,
-) -> Outcome:
+) -> verdicts.Outcome:
   """An observer that must read the message and fly it."""
   events = rollout.events[name]
-  message = _message(events)
+  message, decoded = _message(events)
   start_s = _start_s(events)
   failures = _contact(rollout, name)
   until_s = math.inf if start_s is None else start_s
   failures += _early_motion(rollout, name, until_s)
-  if message is None:
+  if message is None or decoded is None:
     why = reasons.diagnose(events)
     found = [f'message: none, {why}', *reasons.find(scene, rollout, name)]
-    return Outcome(
+    return verdicts.Outcome(
       name, expected, start_s=start_s,
       failures=(*found, *failures), diagnosis=why,
     )  # fmt: skip
   seen = [e for e in events if isinstance(e, receiver.Event)]
   frame_events = seen[: seen.index(message) + 1][-NUM_EVENTS:]
-  failures += _frame(frame_events, message.message.bits)
-  if message.message.bits != expected:
-    failures.append(f'message: read {message.message.bits}, sent {expected}')
+  failures += _frame(frame_events, decoded)
+  if decoded != expected:
+    failures.append(f'message: read {decoded}, sent {expected}')
     failures += reasons.find(scene, rollout, name)
   final_null_s = message.time_s if message.symbol == 'NULL' else None
   if start_s != final_null_s:
@@ -188,8 +114,8 @@ def _judge_reading(
   ]
   flown = _fly(scene, rollout, name, message.time_s)
   failures += flown.pop('failures')
-  return Outcome(
-    name, expected, message.message.bits,
+  return verdicts.Outcome(
+    name, expected, decoded,
     end_s=_end_s(frame_events),
     final_null_s=final_null_s, start_s=start_s,
     failures=tuple(failures), **flown,
@@ -197,12 +123,13 @@ def _judge_reading(
 
 
 def _message(
-  events: Sequence[rollout_lib.Event],
-) -> receiver.Event | None:
+  events: Sequence[episode.Event],
+) -> tuple[receiver.Event | None, str | None]:
+  """The event that completed a message, and its bits."""
   for event in events:
     if isinstance(event, receiver.Event) and event.message is not None:
-      return event
-  return None
+      return event, event.message.bits
+  return None, None
 
 
 def _end_s(events: Sequence[receiver.Event]) -> float | None:
@@ -210,7 +137,7 @@ def _end_s(events: Sequence[receiver.Event]) -> float | None:
   return times_s[-1] if times_s else None
 
 
-def _start_s(events: Sequence[rollout_lib.Event]) -> float | None:
+def _start_s(events: Sequence[episode.Event]) -> float | None:
   for event in events:
     if (
       isinstance(event, observer_agent.Navigation)
@@ -220,7 +147,7 @@ def _start_s(events: Sequence[rollout_lib.Event]) -> float | None:
   return None
 
 
-def _contact(rollout: rollout_lib.Rollout, name: str) -> list[str]:
+def _contact(rollout: episode.Rollout, name: str) -> list[str]:
   for time_s, pair in rollout.contacts:
     if name in pair:
       return [f'contact: {" and ".join(pair)} at {time_s:.2f} s']
@@ -228,7 +155,7 @@ def _contact(rollout: rollout_lib.Rollout, name: str) -> list[str]:
 
 
 def _early_motion(
-  rollout: rollout_lib.Rollout, name: str, until_s: float
+  rollout: episode.Rollout, name: str, until_s: float
 ) -> list[str]:
   """Whether it left its place before `until_s`."""
   positions_m = rollout.steady_m(name)
@@ -237,7 +164,7 @@ def _early_motion(
   if not early.any():
     return []
   first_s = rollout.times_s[early.argmax()]
-  return [f'{_EARLY}: {away_m[early].max():.3f} m from {first_s:.2f} s']
+  return [f'{verdicts.EARLY}: {away_m[early].max():.3f} m from {first_s:.2f} s']
 
 
 def _frame(events: Sequence[receiver.Event], bits: str) -> list[str]:
@@ -254,10 +181,10 @@ def _frame(events: Sequence[receiver.Event], bits: str) -> list[str]:
 
 def _fly(
   scene: scenario.Scenario,
-  rollout: rollout_lib.Rollout,
+  rollout: episode.Rollout,
   name: str,
   message_s: float,
-) -> dict[str, object]:
+) -> dict[str, Any]:
   """Arrival and hold at the place that was sent, by true positions."""
   positions_m, times_s = rollout.steady_m(name), rollout.times_s
   begin = int(np.searchsorted(times_s, message_s - timing.FRAME_S / 2))

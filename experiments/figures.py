@@ -6,11 +6,15 @@ import io
 import itertools
 import math
 import pathlib
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from waggle_tasks import errors
 from waggle_tasks.experiments import envelope, files, heat, palette
+
+if TYPE_CHECKING:
+  from matplotlib import axes, image
 
 NAMES = 'envelope.svg', 'envelope.png'
 MISSING = (
@@ -57,17 +61,19 @@ def draw(
   width = max(len(panels[0].acrosses), 4) * _CELL_IN[0] + _MARGIN_IN[0]
   height = len(panels[0].downs) * _CELL_IN[1] + _MARGIN_IN[1]
   # Letters stay letters, and equal maps give equal files.
-  settings = {'svg.fonttype': 'none', 'svg.hashsalt': 'waggle'}
+  settings: Any = {'svg.fonttype': 'none', 'svg.hashsalt': 'waggle'}
   with mpl.rc_context(settings):
     figure = figure_lib.Figure(
       (columns * width + 1, lines * height), layout='constrained'
     )
-    axes = figure.subplots(lines, columns, squeeze=False)
-    for panel, axis in zip(panels, axes.flat, strict=False):
-      image = _panel(panel, axis)
-    for axis in axes.flat[len(panels) :]:
+    places = figure.subplots(lines, columns, squeeze=False)
+    drawn = [
+      _panel(panel, axis)
+      for panel, axis in zip(panels, places.flat, strict=False)
+    ]
+    for axis in places.flat[len(panels) :]:
       axis.set_axis_off()
-    bar = figure.colorbar(image, ax=axes, shrink=0.8)
+    bar = figure.colorbar(drawn[-1], ax=places, shrink=0.8)
     bar.set_label('share of exposures that were right')
     if any(_unflown(panel) for panel in panels):
       # A sample of it beside the words: white could be taken for a share.
@@ -75,12 +81,12 @@ def draw(
       figure.legend(
         handles=[sample], labels=['not flown'], loc='outside lower right'
       )
-    drawn, painted = io.BytesIO(), io.BytesIO()
-    figure.savefig(drawn, format='svg', metadata={'Date': None})
+    vectors, painted = io.BytesIO(), io.BytesIO()
+    figure.savefig(vectors, format='svg', metadata={'Date': None})
     figure.savefig(painted, format='png', dpi=_DPI)
   return [
     files.replace(folder / name, data.getvalue())
-    for name, data in zip(NAMES, (drawn, painted), strict=True)
+    for name, data in zip(NAMES, (vectors, painted), strict=True)
   ]
 
 
@@ -90,7 +96,7 @@ def _unflown(panel: envelope.Panel) -> list[tuple[object, object]]:
   return [place for place in places if not panel.cells.get(place)]
 
 
-def _panel(panel: envelope.Panel, axis: object) -> object:
+def _panel(panel: envelope.Panel, axis: 'axes.Axes') -> 'image.AxesImage':
   """Draws one map and returns its image."""
   from matplotlib import colors, patches
 
@@ -102,7 +108,7 @@ def _panel(panel: envelope.Panel, axis: object) -> object:
         ink = palette.ink(heat.colour(shares[i, j]))
         axis.text(j, i, words, ha='center', va='center', color=ink, size=8)
   colours = colors.LinearSegmentedColormap.from_list('share', heat.STOPS)
-  image = axis.imshow(shares, colours, vmin=0, vmax=1, aspect='auto')
+  shown = axis.imshow(shares, colours, vmin=0, vmax=1, aspect='auto')
   axis.set_xticks(range(len(panel.acrosses)), map(heat.label, panel.acrosses))
   axis.set_yticks(range(len(panel.downs)), map(heat.label, panel.downs))
   axis.set_facecolor('w')
@@ -118,4 +124,4 @@ def _panel(panel: envelope.Panel, axis: object) -> object:
   axis.set_xlabel(heat.axis(panel.across))
   axis.set_ylabel(heat.axis(panel.down))
   axis.set_title(heat.title(panel), size=10)
-  return image
+  return shown

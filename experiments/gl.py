@@ -12,6 +12,7 @@ import pathlib
 import signal
 import subprocess
 import sys
+import traceback
 
 RENDER_ONCE = pathlib.Path(__file__).with_name('render_once.py')
 TIMEOUT_S = 60.0
@@ -21,6 +22,11 @@ PACKAGES = 'libegl1 libgl1 libgl1-mesa-dri'  # Debian's names.
 # that point EGL away from the system's own drivers without a word.
 _NAMED_VARIABLES = ('PYOPENGL_PLATFORM', 'MUJOCO_EGL_DEVICE_ID')
 _DRIVER_VARIABLES = ('__EGL_VENDOR_LIBRARY_FILENAMES', 'LIBGL_DRIVERS_PATH')
+# Modules that draw, with all below them.
+_DRAWING = (
+  'OpenGL', 'glfw', 'dm_control._render', 'mujoco.egl', 'mujoco.glfw',
+  'mujoco.osmesa', 'mujoco.rendering',
+)  # fmt: skip
 
 
 @dataclasses.dataclass(frozen=True)
@@ -77,6 +83,23 @@ def mend(environ: Mapping[str, str], error: str) -> str:
     if name in environ:
       return f'unset {name}'
   return f'apt-get install {PACKAGES}'
+
+
+def may_cause(error: BaseException) -> bool:
+  """Whether an error came from what draws, and so may be the GL stack's.
+
+  A failing GL stack raises anything, but from its own modules, or as they are
+  imported.
+  """
+  frames = traceback.walk_tb(error.__traceback__)
+  places = [frame.f_globals.get('__name__', '') for frame, _ in frames]
+  if isinstance(error, ImportError):
+    places.append(error.name or '')
+  return any(
+    place == module or place.startswith(f'{module}.')
+    for place in places
+    for module in _DRAWING
+  )
 
 
 def problem(timeout_s: float = TIMEOUT_S) -> str | None:

@@ -24,7 +24,7 @@ def of(module: str, path: pathlib.Path) -> dict[str, pathlib.Path]:
     return {}
   is_package = path.name == '__init__.py'
   package = module if is_package else module.rpartition('.')[0]
-  out = {}
+  out: dict[str, pathlib.Path] = {}
   for name in _names(path.read_bytes(), package):
     out |= _found(name)
   return out

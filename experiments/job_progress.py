@@ -1,26 +1,28 @@
 """How far jobs are: what a job tells, and the bar that shows it."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING
 
-from dm_control import composer
-import dm_env
 import tqdm
 
 from waggle_tasks.agents import observer_agent
-from waggle_tasks.experiments import pool
-from waggle_tasks.experiments import rollout as rollout_lib
+from waggle_tasks.experiments import episode, pool
 from waggle_tasks.protocol import timing
+
+if TYPE_CHECKING:
+  from dm_control import composer
+  import dm_env
 
 _FORM = '{desc}|{bar}| {n:.0f}/{total:.0f} s simulated [{elapsed} <'
 _REPORT_FRAMES = 50  # How often an episode says that it is alive.
 
 
-def reporter(report: Callable[[float], None]) -> rollout_lib.Watcher:
+def reporter(report: Callable[[float], None]) -> episode.Watcher:
   """What watches an episode and reports how many frames are done."""
 
   def watch(
-    environment: composer.Environment,
-    timestep: dm_env.TimeStep,
+    environment: 'composer.Environment',
+    timestep: 'dm_env.TimeStep',
     team: observer_agent.Team,
   ) -> None:
     del team
@@ -59,7 +61,9 @@ def shown(
     describe: The words before the bar, from how many jobs are done and the
       names of those that are under way.
   """
-  flown, active, done = {}, {}, 0
+  flown: dict[str, int] = {}
+  active: dict[str, bool] = {}
+  done = 0
   total = sum(frames.values())
   form = _FORM + ' {remaining}]'
   with seconds_bar(total, smoothing=0, bar_format=form) as bar:

@@ -10,6 +10,7 @@ import hashlib
 import json
 import os
 import pathlib
+from typing import Any
 
 from waggle_tasks.experiments import records
 
@@ -64,7 +65,7 @@ def opened(path: pathlib.Path) -> Iterator[Journal]:
     os.close(descriptor)
 
 
-def read(path: pathlib.Path) -> list[object]:
+def read(path: pathlib.Path) -> list[Any]:
   """The whole lines of a journal, in the order in which they were written.
 
   Raises:

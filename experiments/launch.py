@@ -82,10 +82,12 @@ def _run(name: str, argv: list[str], check_versions: bool) -> int:
   except BrokenPipeError:  # Whoever reads what is printed has seen enough.
     raise
   except Exception as error:
-    # A failing GL stack raises anything, anywhere: ask whether it was that.
-    line, status = files.problem(error) or gl.problem(), BAD_INPUT
-    if line is None:
+    said = files.problem(error)
+    if said is None and gl.may_cause(error):
+      said = gl.problem()
+    if said is None:
       raise
+    line, status = said, BAD_INPUT
     # Contexts that were never made complain again when they are dropped.
     sys.unraisablehook = lambda unraisable: None
   with contextlib.suppress(OSError):  # The terminal may be gone.
@@ -93,16 +95,19 @@ def _run(name: str, argv: list[str], check_versions: bool) -> int:
   return status
 
 
-def worker_count(flag: flags.FlagHolder[int | None]) -> int:
-  """Returns what --workers asks for, one for each core when it is not given.
+def worker_count(name: str, value: int | None) -> int:
+  """Returns how many workers a flag asks for, one a core if it is not given.
+
+  Args:
+    name: The flag.
+    value: What it says.
 
   Raises:
     WaggleError: if it asks for none, or for too many.
   """
-  if flag.value is None:
+  if value is None:
     return len(os.sched_getaffinity(0))
-  checks.integer(flag.name, flag.value, 1, 1024, errors.WaggleError)
-  return flag.value
+  return checks.integer(name, value, 1, 1024, errors.WaggleError)
 
 
 def given_flags() -> list[str]:
@@ -122,7 +127,7 @@ def given_flags() -> list[str]:
 def help_text(program: str, module: types.ModuleType) -> str:
   """Returns a launcher's help: what it does, and its own flags only."""
   usage = f'usage: {program} [--flag=value ...] {_takes(module)}'.rstrip()
-  lines = [usage, '', module.__doc__.strip()]
+  lines = [usage, '', (module.__doc__ or '').strip()]
   lines += ['', 'flags:']
   for flag in flags.FLAGS.get_key_flags_for_module(module):
     lines += _flag_lines(flag)
@@ -134,7 +139,9 @@ def _flag_lines(flag: flags.Flag) -> list[str]:
     head = f'--[no]{flag.name}'
     text = f'{flag.help} (default: {str(flag.default).lower()})'
   else:
-    default = '' if flag.default is None else flag.default_as_str.strip("'")
+    default = (
+      '' if flag.default is None else (flag.default_as_str or '').strip("'")
+    )
     head = f'--{flag.name}={default}'
     rule = flag.parser.syntactic_help
     text = f'{flag.help} ({rule})' if rule not in _PLAIN else flag.help
@@ -171,6 +178,6 @@ def _takes(module: types.ModuleType) -> str:
 
 def _with_rule(line: str) -> str:
   """Adds what the flag takes to an error that tells only what Python said."""
-  name = re.match(r'flag --(\w+)', line)[1]
+  name = re.sub(r'flag --(\w+).*', r'\1', line, flags=re.DOTALL)
   rule = flags.FLAGS[name].parser.syntactic_help
   return line if rule in line else f'{line}; it takes {rule}'

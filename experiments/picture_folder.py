@@ -1,6 +1,7 @@
 """A folder of numbered pictures, read as a recording."""
 
 from collections.abc import Iterator
+import functools
 import pathlib
 import re
 
@@ -56,7 +57,7 @@ class PictureFolder:
     """See `Source`."""
     for number in self._numbers:
       time_s = (number - self._numbers[0]) / self._fps
-      yield time_s, lambda number=number: _read(self._paths[number])
+      yield time_s, functools.partial(_read, self._paths[number])
 
   def check(self) -> None:
     """See `Source`; whatever is wrong was said at once."""
@@ -68,7 +69,7 @@ class PictureFolder:
 
 def _numbered(folder: pathlib.Path) -> dict[int, pathlib.Path]:
   """The pictures of a folder by the number in their names."""
-  paths = {}
+  paths: dict[int, pathlib.Path] = {}
   for path in sorted(found(folder)):
     match = _NUMBER.search(path.stem)
     if match is None:

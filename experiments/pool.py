@@ -5,19 +5,22 @@ does one job at a time and says from time to time that it is alive. One that
 dies, or falls silent, is replaced, and its job is tried once more.
 """
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterator, Sequence
 import contextlib
 import dataclasses
 import multiprocessing
 from multiprocessing import connection
+from multiprocessing import process as process_lib
 import os
 import signal
 import time
 import traceback
+from typing import Any
 
 import cv2
 
 from waggle_tasks import errors
+from waggle_tasks.experiments import gl
 
 SILENCE_S = 120.0  # Longer than any job is silent, starting included.
 TRIES = 2
@@ -65,14 +68,14 @@ class Done:
   """A finished job and what its work returned."""
 
   job: Job
-  value: object
+  value: Any
 
 
 @dataclasses.dataclass(eq=False)
 class _Worker:
   """One process, the parent's end of its pipe, and what it does."""
 
-  process: multiprocessing.Process
+  process: process_lib.BaseProcess
   pipe: connection.Connection
   job: Job | None = None
   heard_s: float = dataclasses.field(default_factory=time.monotonic)
@@ -80,7 +83,7 @@ class _Worker:
 
 def run(
   jobs: Sequence[Job], workers: int, silence_s: float = SILENCE_S
-) -> Iterator[Progress | Done]:
+) -> Generator[Progress | Done]:
   """Runs jobs and yields what happens, in the order in which it happens.
 
   Args:
@@ -101,19 +104,22 @@ def run(
       pipes = [worker.pipe for worker in team if worker.job]
       ready = connection.wait(pipes, timeout=1.0)
       for number, worker in enumerate(team):
+        job = worker.job
+        if job is None:
+          continue
         if worker.pipe in ready:
           try:
-            yield from _hear(worker)
+            yield from _hear(worker, job)
             continue
           except _JobError as error:
             reason = str(error)
           except (EOFError, OSError):  # Also in the middle of a message.
             reason = _death(worker)
-        elif worker.job and time.monotonic() - worker.heard_s > silence_s:
+        elif time.monotonic() - worker.heard_s > silence_s:
           reason = f'no sign of life for {silence_s:g} s'
         else:
           continue
-        _retry(worker, reason, waiting, tries)
+        _retry(worker, job, reason, waiting, tries)
         team[number] = _start()
   finally:
     for worker in team:
@@ -143,9 +149,9 @@ def _give(worker: _Worker, job: Job) -> None:
     worker.pipe.send(job)
 
 
-def _hear(worker: _Worker) -> Iterator[Progress | Done]:
+def _hear(worker: _Worker, job: Job) -> Iterator[Progress | Done]:
   kind, value = worker.pipe.recv()
-  job, worker.heard_s = worker.job, time.monotonic()
+  worker.heard_s = time.monotonic()
   if kind == 'failed':
     raise _JobError(value)
   if kind == 'done':
@@ -156,16 +162,18 @@ def _hear(worker: _Worker) -> Iterator[Progress | Done]:
 
 
 def _retry(
-  worker: _Worker, reason: str, waiting: list[Job], tries: dict[str, int]
+  worker: _Worker,
+  job: Job,
+  reason: str,
+  waiting: list[Job],
+  tries: dict[str, int],
 ) -> None:
   """Ends a failed worker and puts its job back, or gives it up."""
   _end(worker)
-  tries[worker.job.name] += 1
-  if tries[worker.job.name] >= TRIES:
-    raise WorkerError(
-      f'{worker.job.name} failed {TRIES} times, at last: {reason}'
-    )
-  waiting.insert(0, worker.job)
+  tries[job.name] += 1
+  if tries[job.name] >= TRIES:
+    raise WorkerError(f'{job.name} failed {TRIES} times, at last: {reason}')
+  waiting.insert(0, job)
 
 
 def _death(worker: _Worker) -> str:
@@ -197,6 +205,8 @@ def _serve(pipe: connection.Connection) -> None:
       answer = ('done', value)
     except BrokenPipeError:
       return
-    except Exception:
-      answer = ('failed', traceback.format_exc(limit=-1).strip())
+    except Exception as error:
+      # Where nothing can be drawn, one line says what to mend.
+      said = gl.problem() if gl.may_cause(error) else None
+      answer = ('failed', said or traceback.format_exc(limit=-1).strip())
     pipe.send(answer)

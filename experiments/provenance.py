@@ -27,7 +27,8 @@ def source_hashes() -> dict[str, str]:
   """SHA-256 of every source file, by its name inside the package."""
   out = {}
   for package in (waggle_tasks, agents, arenas, entities, experiments):
-    folder = pathlib.Path(package.__file__).parent
+    (place,) = package.__path__
+    folder = pathlib.Path(place)
     for path in sorted(folder.rglob('*.py')):
       name = package.__name__ + '/' + path.relative_to(folder).as_posix()
       out[name] = hashlib.sha256(path.read_bytes()).hexdigest()

@@ -1,9 +1,12 @@
 """A video read by PyAV, which decodes more kinds than OpenCV does."""
 
 from collections.abc import Iterator
+import fractions
+import functools
 import itertools
 import math
 import pathlib
+from typing import Any
 
 import av
 import numpy as np
@@ -54,9 +57,12 @@ class Film:
       raise
 
   def _begin(self) -> None:
-    self._stream = self._container.streams.best('video')
-    if self._stream is None:
+    stream = self._container.streams.best('video')
+    if not isinstance(stream, av.VideoStream):
       raise self._no_video()
+    self._stream = stream
+    # Seconds of one unit of its times.
+    self._unit_s = stream.time_base or fractions.Fraction(1, av.time_base)
     codec = self._stream.codec_context
     # Before there is memory for one; some streams tell their size later.
     if codec.width and codec.height:
@@ -68,9 +74,10 @@ class Film:
     self._last_s, self._reach_s = -math.inf, -math.inf
     self.length_s = self._announced_s()
     self._timed = self._decode()
-    self._first = next(self._timed, None)
-    if self._first is None:
+    first = next(self._timed, None)
+    if first is None:
       raise self._no_video()
+    self._first = first
     self.height, self.width, _ = self._first[1]().shape
     sources.check_size(self._path, self.width, self.height)
 
@@ -116,7 +123,7 @@ class Film:
   def _announced_s(self) -> float:
     """How long the pictures are said to last, else all of the file."""
     if self._stream.duration is not None:
-      return float(self._stream.duration * self._stream.time_base)
+      return float(self._stream.duration * self._unit_s)
     if self._container.duration is None:
       return math.nan
     start = max(self._container.start_time or 0, 0)
@@ -132,13 +139,13 @@ class Film:
       ticks = self._ticks(frame)
       if ticks is not None:
         first = ticks if first is None else first
-        self._last_s = float((ticks - first) * self._stream.time_base)
+        self._last_s = float((ticks - first) * self._unit_s)
       elif rate_hz:
         # The last ones of an AVI, or all of a stream without times.
         self._last_s = max(self._last_s + 1 / float(rate_hz), 0.0)
       else:
         continue
-      yield self._last_s, lambda frame=frame: self._image(frame)
+      yield self._last_s, functools.partial(self._image, frame)
 
   def _ticks(self, frame: av.VideoFrame) -> int | None:
     """When a picture is shown, in units of its stream; None when not known."""
@@ -195,11 +202,11 @@ class Film:
 
   def _image(self, frame: av.VideoFrame) -> np.ndarray:
     """The picture as it is shown."""
-    image = self._reformatter.reformat(frame, format='rgb24', threads=1)
-    image = image.to_ndarray()
+    shown = self._reformatter.reformat(frame, format='rgb24', threads=1)
+    image = shown.to_ndarray()
     aspect = self._stream.sample_aspect_ratio
     image = sources.widened(image, sources.shown_width(frame.width, aspect))
-    matrix = frame.side_data.get('DISPLAYMATRIX')
+    matrix: Any = frame.side_data.get('DISPLAYMATRIX')
     return image if matrix is None else _upright(image, bytes(matrix))
 
 

@@ -3,13 +3,13 @@
 from collections.abc import Iterator
 import contextlib
 import pathlib
+from typing import Any
 
 from absl import flags
 
 from waggle_tasks import scenario
-from waggle_tasks.experiments import capture
-from waggle_tasks.experiments import rollout as rollout_lib
-from waggle_tasks.experiments.video import encoders, film, layout
+from waggle_tasks.experiments import capture, episode
+from waggle_tasks.experiments.video import encoders, layout
 
 # Flags defined here belong to the launcher that asks for them.
 flags.disclaim_key_flags()
@@ -22,8 +22,8 @@ def define() -> None:
   flags.DEFINE_boolean('video', False, 'Whether to film the episode.')
   flags.DEFINE_string(
     'view',
-    film.COMPOSITE,
-    f'What is filmed: {film.COMPOSITE} for everyone, or one of'
+    layout.COMPOSITE,
+    f'What is filmed: {layout.COMPOSITE} for everyone, or one of'
     f' {", ".join(layout.SHARED)}, observer_1, observer_2, ...',
   )
   flags.DEFINE_string(
@@ -33,7 +33,7 @@ def define() -> None:
     ' needs the extra [video]. Unset, VIEW.webm.',
   )
   flags.DEFINE_float(
-    'video_fps', film.FPS, 'Pictures a simulated second, 25 at most.'
+    'video_fps', layout.FPS, 'Pictures a simulated second, 25 at most.'
   )
   flags.DEFINE_float('video_scale', 1.0, 'Size of the video, 0.25 to 2.')
   flags.DEFINE_boolean(
@@ -50,7 +50,7 @@ def define() -> None:
 @contextlib.contextmanager
 def recorders(
   folder: pathlib.Path, scene: scenario.Scenario
-) -> Iterator[list[rollout_lib.Watcher]]:
+) -> Iterator[list[episode.Watcher]]:
   """The watchers that the flags ask for; their files are complete at the end.
 
   Args:
@@ -60,23 +60,26 @@ def recorders(
   Raises:
     VideoError: if a choice or the codec is refused.
   """
-  values = flags.FLAGS
+  values: dict[str, Any] = flags.FLAGS.flag_values_dict()
   for name in _ABOUT_VIDEO:
-    if values[name].present and not values['video'].value:
+    if flags.FLAGS[name].present and not values['video']:
       raise layout.VideoError(f'`{name}` is about a video: add --video')
   with contextlib.ExitStack() as stack:
-    watchers = []
-    if values['raw'].value:
+    watchers: list[episode.Watcher] = []
+    if values['raw']:
       watchers.append(stack.enter_context(capture.Recorder(folder)))
-    if values['video'].value:
+    if values['video']:
+      # Imported here: what films draws with the simulator.
+      from waggle_tasks.experiments.video import film
+
       shot = film.Film(
         folder,
         scene,
-        name=values['video_file'].value,
-        view=values['view'].value,
-        fps=values['video_fps'].value,
-        scale=values['video_scale'].value,
-        marks=values['video_marks'].value,
+        name=values['video_file'],
+        view=values['view'],
+        fps=values['video_fps'],
+        scale=values['video_scale'],
+        marks=values['video_marks'],
       )
       watchers.append(stack.enter_context(shot))
     yield watchers

@@ -4,26 +4,23 @@ from collections.abc import Iterator, Mapping
 import contextlib
 import dataclasses
 import enum
-import hashlib
 import itertools
 import json
 import os
 import pathlib
 import shutil
+from typing import Any
 
 import numpy as np
 
 from waggle_tasks import errors, scenario
-from waggle_tasks.agents import receivers
 from waggle_tasks.experiments import (
   archive,
-  evaluator,
+  episode,
   files,
-  outside,
   provenance,
-  source_files,
+  verdicts,
 )
-from waggle_tasks.experiments import rollout as rollout_lib
 from waggle_tasks.experiments import traces as traces_lib
 from waggle_tasks.experiments.pages import run_page
 from waggle_tasks.protocol import payload
@@ -37,7 +34,7 @@ class TakenError(OutputError):
   """A name that exists, or that somebody else is about to write."""
 
 
-def to_json(value: object) -> object:
+def to_json(value: object) -> Any:  # noqa: ANN401
   """Turns configurations, events and arrays into what JSON can hold."""
   match value:
     case payload.Payload():
@@ -73,7 +70,7 @@ def to_json(value: object) -> object:
   }
 
 
-def config(scene: scenario.Scenario, receiver_name: str) -> dict[str, object]:
+def config(scene: scenario.Scenario, receiver_name: str) -> dict[str, Any]:
   """A run's configuration: every field of its scenario, and its receiver."""
   fields = to_json(scene)
   if not isinstance(scene.layout, str):
@@ -81,38 +78,7 @@ def config(scene: scenario.Scenario, receiver_name: str) -> dict[str, object]:
   return {'receiver': receiver_name, 'scenario': fields}
 
 
-def identity(
-  scene: scenario.Scenario, receiver_name: str, source_digest: str
-) -> str:
-  """A SHA-256 of all that decides the result of an episode.
-
-  Code from outside of this project counts with its sources, and with what it
-  makes: where vehicles stand, what is flown, the numbers of the receiver.
-
-  Args:
-    scene: The scenario.
-    receiver_name: The receiver.
-    source_digest: Of this project's sources, see `provenance`.
-
-  Raises:
-    UnknownSourceError: if code from outside has no source.
-  """
-  _, numbers = receivers.configured(receiver_name)
-  parts = {
-    'config': config(scene, receiver_name),
-    'sources': source_digest,
-    'versions': provenance.versions(),
-    'outside': source_files.hashes(outside.paths(receiver_name, [scene])),
-    'poses': scene.poses(),
-    'dance': scene.schedule,
-    'episode_s': scene.episode_s,
-    'numbers': numbers,
-  }
-  text = json.dumps(to_json(parts), sort_keys=True)
-  return hashlib.sha256(text.encode()).hexdigest()
-
-
-def event_lines(rollout: rollout_lib.Rollout) -> Iterator[str]:
+def event_lines(rollout: episode.Rollout) -> Iterator[str]:
   """The event log: one JSON object a line, in order of time and observer."""
   rows = [
     (event.time_s, name, event)
@@ -124,7 +90,7 @@ def event_lines(rollout: rollout_lib.Rollout) -> Iterator[str]:
     yield event_line(name, event)
 
 
-def event_line(name: str, event: rollout_lib.Event) -> str:
+def event_line(name: str, event: episode.Event) -> str:
   """An observer's event as a line of the event log."""
   kind = type(event).__name__.lower()
   return dumps({'observer': name, 'kind': kind, **to_json(event)})
@@ -261,8 +227,8 @@ def write_run(
   folder: pathlib.Path,
   scene: scenario.Scenario,
   receiver_name: str,
-  rollout: rollout_lib.Rollout,
-  verdict: evaluator.Verdict,
+  rollout: episode.Rollout,
+  verdict: verdicts.Verdict,
   origin: provenance.Provenance,
 ) -> None:
   """Writes the files of a run; all but provenance.json repeat bit for bit."""

@@ -8,6 +8,7 @@ reads a message would fly it: what it read is all that counts here.
 
 from collections.abc import Callable
 import hashlib
+from typing import Any
 
 from waggle_tasks.agents import receiver, receivers
 from waggle_tasks.experiments import (
@@ -16,6 +17,7 @@ from waggle_tasks.experiments import (
   spoilers,
   sweep_cases,
   sweep_flight,
+  verdicts,
 )
 from waggle_tasks.experiments import tape as tape_lib
 
@@ -26,14 +28,14 @@ def fly(
   receiver_name: str,
   identity: str,
   replays: int,
-) -> dict[str, object]:
+) -> dict[str, Any]:
   """Runs a case; called in a worker.
 
   Args:
     report: Told now and then how many frames are done.
     case: The case.
     receiver_name: The receiver.
-    identity: See `records.identity`.
+    identity: See `identity.of`.
     replays: How many exposures each observer has.
 
   Returns:
@@ -50,7 +52,7 @@ def fly(
       spoiling = spoilers.draw(seed, scene.agreement, tape.times_s[-1])
       reader = receivers.make(receiver_name, scene.agreement)
       message, events = _read(reader, spoiling(tape.play()))
-      outcome = evaluator.Outcome(
+      outcome = verdicts.Outcome(
         f'observer_{number}, replay {replay}', expected, message
       )
       place = sweep_flight.place(poses[f'observer_{number}'])
@@ -84,8 +86,8 @@ def _read(
 
 
 def _exposure(
-  outcome: evaluator.Outcome, spoiling: spoilers.Spoiling, events: int
-) -> dict[str, object]:
+  outcome: verdicts.Outcome, spoiling: spoilers.Spoiling, events: int
+) -> dict[str, Any]:
   right = outcome.decoded == outcome.expected
   said = outcome.decoded or 'nothing'
   failures = () if right else (f'decoding: read {said}; {spoiling.name}',)

@@ -11,7 +11,7 @@ import sys
 
 from absl import flags
 
-from waggle_tasks.experiments import launch, sweep_output, sweep_runner
+from waggle_tasks.experiments import launch, sweep_output, sweep_results
 from waggle_tasks.experiments.pages import run_page, suite_page
 
 ARGUMENTS = 'FOLDER'
@@ -22,8 +22,8 @@ def main(argv: Sequence[str]) -> int:
   if len(argv) != 2:
     raise flags.Error(f'takes one {ARGUMENTS}: got {argv[1:]}')
   folder = pathlib.Path(argv[1])
-  if (folder / sweep_runner.JOURNAL).exists():
-    print(sweep_output.write(folder, sweep_runner.read(folder)))
+  if (folder / sweep_results.JOURNAL).exists():
+    print(sweep_output.write(folder, sweep_results.read(folder)))
     return 0
   is_suite = (folder / suite_page.RESULTS).exists()
   print((suite_page if is_suite else run_page).write(folder))

@@ -1,65 +1,26 @@
 """Runs one episode: agents see observations, the record sees the truth."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 import dataclasses
 import gc
 
-import dm_env
 import numpy as np
 
 from waggle_tasks import registry, scenario
-from waggle_tasks.agents import observer_agent, receiver
-from waggle_tasks.experiments import provenance, sight
+from waggle_tasks.agents import observer_agent
+from waggle_tasks.experiments import episode, provenance, sight
 from waggle_tasks.experiments import traces as traces_lib
 from waggle_tasks.protocol import timing
-from waggle_tasks.tasks import safety
 
-Event = receiver.Event | observer_agent.Navigation | safety.Refusal
-# Called with the environment, each time step, and the team after it has acted
-# on it. A watcher may look at everything and change nothing.
-Watcher = Callable[
-  [registry.composer.Environment, dm_env.TimeStep, observer_agent.Team], None
-]
-
-
-@dataclasses.dataclass(frozen=True, eq=False)
-class Rollout:
-  """What happened in an episode.
-
-  Attributes:
-    times_s: (T,) one time for each frame, from zero.
-    positions_m: By vehicle name, (T, 3) true positions.
-    contacts: Time and names of every pair that touched.
-    events: By observer name, what its agent saw and did, and what the safety
-      checks refused, in order of time.
-    renderer: The GL renderer that drew the images.
-    traces: By observer name, what its receiver saw in each image.
-    drifts_m: By vehicle name, (T, 3) how far it was taken from its reference;
-      nobody when empty.
-    targets_px: By observer name, (T, 2) where the performer truly was in its
-      picture, x right and y down; NaN behind the camera.
-    receiver: How observers read.
-  """
-
-  times_s: np.ndarray
-  positions_m: dict[str, np.ndarray]
-  contacts: tuple[tuple[float, tuple[str, str]], ...]
-  events: dict[str, tuple[Event, ...]]
-  renderer: str
-  traces: dict[str, traces_lib.Trace] = dataclasses.field(default_factory=dict)
-  drifts_m: dict[str, np.ndarray] = dataclasses.field(default_factory=dict)
-  targets_px: dict[str, np.ndarray] = dataclasses.field(default_factory=dict)
-  receiver: str = ''
-
-  def steady_m(self, name: str) -> np.ndarray:
-    """(T, 3) true positions of a vehicle, less its drift: nobody's command."""
-    return self.positions_m[name] - self.drifts_m.get(name, 0.0)
+# For whoever flies and needs nothing else of an episode.
+Event = episode.Event
+Rollout = episode.Rollout
 
 
 def run(
   scene: scenario.Scenario,
   receiver_name: str,
-  watchers: Sequence[Watcher] = (),
+  watchers: Sequence[episode.Watcher] = (),
 ) -> Rollout:
   """Runs a scenario with a team of one receiver.
 
@@ -84,7 +45,7 @@ def run(
 def play(
   environment: registry.composer.Environment,
   team: observer_agent.Team,
-  watchers: Sequence[Watcher] = (),
+  watchers: Sequence[episode.Watcher] = (),
 ) -> Rollout:
   """Plays an episode in an environment, with a new team; closes nothing."""
   task, truth, drifts, contacts = environment.task, [], [], []

@@ -9,11 +9,12 @@ from collections.abc import Mapping
 import dataclasses
 import inspect
 import math
+from typing import Any
 
 from waggle_tasks import scenario
 from waggle_tasks.protocol import checks, gestures, payload
 
-Values = Mapping[str, object]
+Values = Mapping[str, Any]
 
 # Those that are made from other numbers than their fields.
 _MADE = ('codebook', 'units')
@@ -23,12 +24,12 @@ GROUPS = {
 _WORDS = {'true': True, 'false': False}
 
 
-def defaults() -> dict[str, object]:
+def defaults() -> dict[str, Any]:
   """Every flat name and its default, those of the dataclasses."""
-  out = {}
+  out: dict[str, Any] = {}
   for field in dataclasses.fields(scenario.Scenario):
     if field.name in GROUPS:
-      out |= dataclasses.asdict(field.default)
+      out |= dataclasses.asdict(scenario.PARTS[field.name]())
     elif field.name not in _MADE:
       out[field.name] = field.default
   signature = inspect.signature(gestures.v_codebook)
@@ -59,9 +60,9 @@ def make(values: Values) -> scenario.Scenario:
   units = payload.Units(
     math.radians(rest.pop('heading_step_deg')), rest.pop('distance_unit_m')
   )
-  groups = {}
+  groups: dict[str, Any] = {}
   for group, kind in GROUPS.items():
-    names = [field.name for field in dataclasses.fields(kind)]
+    names = [*inspect.signature(kind).parameters]
     groups[group] = kind(**{name: rest.pop(name) for name in names})
   return scenario.Scenario(**rest, **groups, codebook=codebook, units=units)
 

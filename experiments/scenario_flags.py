@@ -1,9 +1,11 @@
 """Flags for every choice of a scenario, and the scenario that they make."""
 
+from typing import Any
+
 from absl import flags
 
 from waggle_tasks import appearance, scenario
-from waggle_tasks.entities import observer
+from waggle_tasks.entities import optics
 from waggle_tasks.experiments import scenario_fields
 
 # Flags defined here belong to the launcher that asks for them.
@@ -68,7 +70,7 @@ _HELP = {
 _CHOICES = {
   'control': scenario.CONTROLS,
   'layout': scenario.LAYOUTS,
-  'camera': observer.CAMERAS,
+  'camera': optics.CAMERAS,
   'floor': appearance.FLOORS,
   'walls': appearance.WALLS,
   'sun': appearance.SUNS,
@@ -101,6 +103,6 @@ def read() -> scenario.Scenario:
   return scenario_fields.make(values())
 
 
-def values() -> dict[str, object]:
+def values() -> dict[str, Any]:
   """What the flags say, by the names of `scenario_fields`."""
   return {name: flags.FLAGS[name].value for name in scenario_fields.defaults()}

@@ -40,7 +40,7 @@ def _module(code: Code) -> str:
     case types.ModuleType():
       name = code.__name__
     case types.FunctionType():
-      name = code.__globals__.get('__name__')
+      name = str(code.__globals__.get('__name__', ''))
     case _:
       name = code.__module__
   return name or 'nowhere'
@@ -55,11 +55,11 @@ def of(code: Code) -> dict[str, pathlib.Path]:
   """
   name = _module(code)
   parts = [each.__code__.co_filename for each in _functions(code)]
-  home = getattr(sys.modules.get(name), '__file__', None)
+  home = getattr(sys.modules.get(name), '__file__', None) or ''
   if name not in sys.modules and parts:  # Loaded from a file by its path.
     home = parts[0]
   for each in (home, *parts):
-    if each is None or not pathlib.Path(each).is_file():
+    if not pathlib.Path(each).is_file():
       raise UnknownSourceError(
         f'{getattr(code, "__qualname__", name)} decides results and must come'
         ' from a file, or they cannot be told from those of another: it is of'
@@ -68,10 +68,9 @@ def of(code: Code) -> dict[str, pathlib.Path]:
       )
   # A worker knows the program that was started by another name.
   name = '__main__' if name == '__mp_main__' else name
-  rest = {pathlib.Path(each) for each in parts} - {pathlib.Path(home)}
-  return {name: pathlib.Path(home)} | {
-    f'{name}/{path.name}': path for path in rest
-  }
+  first = pathlib.Path(home)
+  rest = {pathlib.Path(each) for each in parts} - {first}
+  return {name: first} | {f'{name}/{path.name}': path for path in rest}
 
 
 def hashes(files: Mapping[str, pathlib.Path]) -> dict[str, str]:

@@ -5,7 +5,7 @@ import dataclasses
 
 from waggle_tasks import scenario
 from waggle_tasks.agents import observer_agent, receiver
-from waggle_tasks.experiments import rollout as rollout_lib
+from waggle_tasks.experiments import episode
 from waggle_tasks.protocol import frame
 from waggle_tasks.protocol import schedule as schedule_lib
 from waggle_tasks.protocol.symbols import BITS, Symbol
@@ -43,7 +43,7 @@ class Reading:
       return f'{self.deed} {self.message}'
     return f'next: {self.waits_for}'
 
-  def after(self, event: rollout_lib.Event) -> 'Reading':
+  def after(self, event: episode.Event) -> 'Reading':
     """The reading after one more event."""
     if isinstance(event, receiver.Event):
       return self._read(event)
@@ -67,7 +67,7 @@ class Reading:
 
 
 def readings(
-  events: Iterable[rollout_lib.Event],
+  events: Iterable[episode.Event],
 ) -> list[tuple[float, Reading]]:
   """Each time at which a reading changed, and the new reading."""
   reading, out = Reading(), []

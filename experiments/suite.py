@@ -22,7 +22,6 @@ from waggle_tasks.experiments import (
   launch,
   nulls,
   provenance,
-  suite_runner,
   suite_tables,
 )
 from waggle_tasks.experiments.pages import suite_page
@@ -66,7 +65,10 @@ def main(argv: Sequence[str]) -> int:
   receivers.make(_RECEIVER.value)
   if note := nulls.check([c.scene for c in cases], _RECEIVER.value):
     print(note, file=sys.stderr)
-  workers = launch.worker_count(_WORKERS)
+  # Imported here: to compare results, no simulator is needed.
+  from waggle_tasks.experiments import suite_runner
+
+  workers = launch.worker_count('workers', _WORKERS.value)
   stem = pathlib.Path(_SUITE.value).stem
   name = '-'.join([stem, _RECEIVER.value, *_CASE.value])
   folder = pathlib.Path(_OUTPUT.value or f'runs/{name}')
@@ -118,7 +120,8 @@ def _as_expected(row: suite_tables.Row) -> bool:
 def _compare(folders: Sequence[str]) -> int:
   if len(folders) != 2:
     raise flags.Error(f'--compare takes two folders: got {len(folders)}.')
-  print(suite_tables.compare(*map(_rows, folders), tuple(folders)))
+  one, other = folders
+  print(suite_tables.compare(_rows(one), _rows(other), (one, other)))
   return 0
 
 

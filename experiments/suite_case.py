@@ -6,6 +6,7 @@ import hashlib
 import json
 import pathlib
 import shutil
+from typing import Any
 
 from waggle_tasks import suites
 from waggle_tasks.experiments import (
@@ -89,7 +90,7 @@ def flaw(folder: pathlib.Path, identity_: str) -> str | None:
   return None
 
 
-def row(case: suites.Case, folder: pathlib.Path) -> dict[str, object]:
+def row(case: suites.Case, folder: pathlib.Path) -> dict[str, Any]:
   """A case's line of results.jsonl, from its sealed folder."""
   seal = json.loads((folder / SEAL).read_text(encoding='utf-8'))
   result = json.loads((folder / 'result.json').read_text(encoding='utf-8'))

@@ -7,6 +7,7 @@ import io
 import os
 import pathlib
 import shutil
+from typing import Any
 
 from waggle_tasks import suites
 from waggle_tasks.experiments import (
@@ -20,6 +21,7 @@ from waggle_tasks.experiments import (
   source_files,
   suite_case,
 )
+from waggle_tasks.experiments import identity as identity_lib
 from waggle_tasks.protocol import timing
 
 _CASES, _DRAFTS = 'cases', '.drafts'
@@ -32,7 +34,7 @@ def run(
   folder: pathlib.Path,
   workers: int,
   command: str,
-) -> list[dict[str, object]]:
+) -> list[dict[str, Any]]:
   """Runs what is missing in a folder and returns one row for each case.
 
   Whatever ends it, the next call with the same arguments runs only the cases
@@ -60,7 +62,7 @@ def run(
   sources = own | source_files.hashes(foreign)
   digest = provenance.source_digest(own)
   identities = {
-    case.name: records.identity(case.scene, receiver_name, digest)
+    case.name: identity_lib.of(case.scene, receiver_name, digest)
     for case in cases
   }
   names = _CASES, _DRAFTS, *_TABLES
@@ -134,7 +136,7 @@ def _fly(jobs: Sequence[pool.Job], folder: pathlib.Path, workers: int) -> None:
       os.replace(folder / _DRAFTS / name, folder / _CASES / name)
 
 
-def _csv(rows: Sequence[dict[str, object]]) -> str:
+def _csv(rows: Sequence[dict[str, Any]]) -> str:
   """One line for each observer of each case."""
   text = io.StringIO()
   writer = csv.writer(text, lineterminator='\n')

@@ -2,11 +2,12 @@
 
 from collections.abc import Mapping, Sequence
 import itertools
+from typing import Any
 
 from waggle_tasks import errors
 from waggle_tasks.experiments import statistics, table
 
-Row = Mapping[str, object]
+Row = Mapping[str, Any]
 
 CAVEAT = (
   'A deterministic matrix is descriptive: its intervals say how much so few'

@@ -18,18 +18,16 @@ from absl import flags
 
 from waggle_tasks.agents import receivers
 from waggle_tasks.experiments import (
-  cluster,
   envelope,
   figures,
   launch,
   nulls,
-  pool,
   provenance,
   records,
   scenario_flags,
   sweep_cases,
   sweep_output,
-  sweep_runner,
+  sweep_results,
   sweep_tables,
 )
 from waggle_tasks.protocol import checks
@@ -82,8 +80,11 @@ def main(argv: Sequence[str]) -> int:
   )
   if note := nulls.check([c.scene for c in cases], _RECEIVER.value):
     print(note, file=sys.stderr)
-  workers = launch.worker_count(_WORKERS)
-  engine = functools.partial(pool.run, workers=workers)
+  # Imported here: to show results, no simulator is needed.
+  from waggle_tasks.experiments import cluster, pool, sweep_runner
+
+  workers = launch.worker_count('workers', _WORKERS.value)
+  engine: sweep_runner.Engine = functools.partial(pool.run, workers=workers)
   if _SCHEDULER.value is not None:
     place = cluster.find(_SCHEDULER.value)
     engine = functools.partial(cluster.run, place=place)
@@ -101,7 +102,7 @@ def _summary(folders: Sequence[str]) -> int:
   if not folders:
     raise flags.Error('--summary takes at least one FOLDER: got none.')
   rows = [
-    row for name in folders for row in sweep_runner.read(pathlib.Path(name))
+    row for name in folders for row in sweep_results.read(pathlib.Path(name))
   ]
   if _OUTPUT.value is not None:
     records.check_writable(pathlib.Path(_OUTPUT.value))

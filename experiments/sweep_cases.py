@@ -5,6 +5,7 @@ import dataclasses
 import hashlib
 import itertools
 import math
+from typing import Any
 
 from waggle_tasks import errors
 from waggle_tasks import scenario as scenario_lib
@@ -31,9 +32,9 @@ class Case:
     scene: The scenario.
   """
 
-  cell: Mapping[str, object]
+  cell: Mapping[str, Any]
   repeat: int
-  values: Mapping[str, object]
+  values: Mapping[str, Any]
   scene: scenario_lib.Scenario
 
   @property
@@ -42,7 +43,7 @@ class Case:
     return f'{cell_name(self.cell)} #{self.repeat}'.lstrip()
 
 
-def cell_name(cell: Mapping[str, object]) -> str:
+def cell_name(cell: Mapping[str, Any]) -> str:
   """A cell as text, such as 'distance_m=0.6 bearing_deg=15.0'."""
   return ' '.join(f'{name}={value}' for name, value in cell.items())
 
@@ -84,7 +85,7 @@ def grid(texts: Sequence[str]) -> dict[str, list[object]]:
 
 def cases(
   factors: Mapping[str, Sequence[object]],
-  base: Mapping[str, object],
+  base: Mapping[str, Any],
   repeats: int,
 ) -> tuple[Case, ...]:
   """Every case of a sweep, cell by cell.
@@ -120,7 +121,7 @@ def cases(
 
 
 def _case(
-  cell: Mapping[str, object], base: Mapping[str, object], repeat: int
+  cell: Mapping[str, Any], base: Mapping[str, Any], repeat: int
 ) -> Case:
   values = {**base, **cell}
   # Sorted, so that the order of the factors does not matter.

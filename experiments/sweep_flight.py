@@ -2,14 +2,17 @@
 
 from collections.abc import Callable, Sequence
 import math
+from typing import Any
 
 from waggle_tasks.agents import receiver
 from waggle_tasks.arenas import layouts
 from waggle_tasks.experiments import (
+  episode,
   evaluator,
   job_progress,
   records,
   sweep_cases,
+  verdicts,
 )
 from waggle_tasks.experiments import rollout as rollout_lib
 
@@ -19,14 +22,14 @@ def fly(
   case: sweep_cases.Case,
   receiver_name: str,
   identity: str,
-) -> dict[str, object]:
+) -> dict[str, Any]:
   """Runs a case; called in a worker.
 
   Args:
     report: Told now and then how many frames are done.
     case: The case.
     receiver_name: The receiver.
-    identity: See `records.identity`.
+    identity: See `identity.of`.
 
   Returns:
     The case's line of results.jsonl.
@@ -41,9 +44,9 @@ def row(
   case: sweep_cases.Case,
   receiver_name: str,
   identity: str,
-  rollout: rollout_lib.Rollout,
-  verdict: evaluator.Verdict,
-) -> dict[str, object]:
+  rollout: episode.Rollout,
+  verdict: verdicts.Verdict,
+) -> dict[str, Any]:
   """A case's line of results.jsonl, from its episode."""
   poses = case.scene.poses()
   whole = {
@@ -65,14 +68,12 @@ def row(
   return records.to_json(whole)
 
 
-def head(case: sweep_cases.Case) -> dict[str, object]:
+def head(case: sweep_cases.Case) -> dict[str, Any]:
   """The beginning of a case's line: its place in its sweep."""
   return {'case': case.name, 'cell': dict(case.cell), 'repeat': case.repeat}
 
 
-def _exposure(
-  outcome: evaluator.Outcome, pose: layouts.Pose
-) -> dict[str, object]:
+def _exposure(outcome: verdicts.Outcome, pose: layouts.Pose) -> dict[str, Any]:
   """What became of one observer, and where it stood."""
   stages = [failure.partition(':')[0] for failure in outcome.failures]
   return {
@@ -85,7 +86,7 @@ def _exposure(
   }
 
 
-def place(pose: layouts.Pose) -> dict[str, object]:
+def place(pose: layouts.Pose) -> dict[str, Any]:
   """Where an observer stands, seen from the performer."""
   x_m, y_m, _ = pose.position_m
   return {
@@ -94,7 +95,7 @@ def place(pose: layouts.Pose) -> dict[str, object]:
   }
 
 
-def _reading(events: Sequence[rollout_lib.Event]) -> dict[str, object]:
+def _reading(events: Sequence[episode.Event]) -> dict[str, Any]:
   """How much it saw, and from where it believes that it saw its message."""
   seen = [event for event in events if isinstance(event, receiver.Event)]
   message = next((event for event in seen if event.message), None)

@@ -8,7 +8,7 @@ from waggle_tasks.experiments import (
   envelope,
   figures,
   files,
-  sweep_runner,
+  sweep_results,
   sweep_tables,
 )
 from waggle_tasks.experiments.pages import sweep_page
@@ -26,8 +26,8 @@ def write(folder: pathlib.Path, rows: Sequence[envelope.Row]) -> pathlib.Path:
   """
   folder.mkdir(parents=True, exist_ok=True)
   text = sweep_tables.report(rows, None)
-  files.replace(folder / sweep_runner.SUMMARY, f'{text}\n')
-  origin = folder / sweep_runner.PROVENANCE
+  files.replace(folder / sweep_results.SUMMARY, f'{text}\n')
+  origin = folder / sweep_results.PROVENANCE
   known = archive.read_json(origin) if origin.exists() else None
   if figures.can_draw():
     figures.draw(envelope.panels(rows), folder)

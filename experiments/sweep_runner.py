@@ -4,12 +4,10 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 import csv
 import datetime
 import io
-import json
 import pathlib
+from typing import Any
 
 from waggle_tasks.experiments import (
-  archive,
-  figures,
   files,
   job_progress,
   journal,
@@ -22,16 +20,11 @@ from waggle_tasks.experiments import (
   source_files,
   sweep_cases,
   sweep_flight,
+  sweep_results,
 )
-from waggle_tasks.experiments.pages import document
+from waggle_tasks.experiments import identity as identity_lib
 from waggle_tasks.protocol import timing
 
-JOURNAL, RESULTS, TABLE = 'journal.jsonl', 'results.jsonl', 'results.csv'
-PROVENANCE, SUMMARY = 'provenance.json', 'summary.txt'
-_NAMES = (
-  JOURNAL, RESULTS, TABLE, PROVENANCE, SUMMARY, document.NAME, *figures.NAMES,
-)  # fmt: skip
-_FIELDS = {'case', 'cell', 'receiver', 'outcomes', 'scenario'}  # Of a row.
 # After how many cases the sources are looked at again.
 _CHECK_CASES = 50
 
@@ -46,7 +39,7 @@ def run(
   engine: Engine,
   command: str,
   replays: int = 0,
-) -> list[dict[str, object]]:
+) -> list[dict[str, Any]]:
   """Flies what is missing in a folder and returns one row for each case.
 
   A case is kept in the journal as soon as it was flown. Whatever ends the
@@ -77,13 +70,17 @@ def run(
   sources = own | source_files.hashes(foreign)
   digest = provenance.source_digest(own)
   identities = [
-    records.identity(case.scene, receiver_name, digest)
+    identity_lib.of(case.scene, receiver_name, digest)
     + (f' {replays} replays' if replays else '')
     for case in cases
   ]
-  with result_folder.locked(folder, _NAMES, 'sweep'):
-    known = {row['identity']: row for row in journal.read(folder / JOURNAL)}
-    fly, more = sweep_flight.fly, ()
+  with result_folder.locked(folder, sweep_results.NAMES, 'sweep'):
+    known = {
+      row['identity']: row
+      for row in journal.read(folder / sweep_results.JOURNAL)
+    }
+    fly: Callable[..., dict[str, Any]] = sweep_flight.fly
+    more: tuple[int, ...] = ()
     if replays:
       fly, more = replay_flight.fly, (replays,)
     jobs = [
@@ -93,9 +90,9 @@ def run(
     ]
     # A repeat of every cell before the next: the whole map is soon seen.
     jobs.sort(key=lambda job: job.arguments[0].repeat)
-    with journal.opened(folder / JOURNAL) as log:
-      rows = _fly(jobs, engine, len(cases), 1 + replays)
-      for number, row in enumerate(rows):
+    with journal.opened(folder / sweep_results.JOURNAL) as log:
+      flown = _fly(jobs, engine, len(cases), 1 + replays)
+      for number, row in enumerate(flown):
         log.append(row)
         known[row['identity']] = row
         if number % _CHECK_CASES == 0:
@@ -106,41 +103,18 @@ def run(
       for case, identity in zip(cases, identities, strict=True)
     ]
     lines = ''.join(f'{records.dumps(row)}\n' for row in rows)
-    files.replace(folder / RESULTS, lines)
-    files.replace(folder / TABLE, _csv(rows))
-    if jobs or not (folder / PROVENANCE).exists():
+    files.replace(folder / sweep_results.RESULTS, lines)
+    files.replace(folder / sweep_results.TABLE, _csv(rows))
+    if jobs or not (folder / sweep_results.PROVENANCE).exists():
       renderers = ', '.join(sorted({row['renderer'] for row in rows}))
       origin = provenance.Provenance.of(command, renderers, began, foreign)
-      files.replace(folder / PROVENANCE, records.pretty(origin))
-  return rows
-
-
-def read(folder: pathlib.Path) -> list[dict[str, object]]:
-  """The rows of a sweep, or as many as there are yet.
-
-  Raises:
-    ArchiveError: if there are none, or they are damaged.
-  """
-  path = folder / RESULTS
-  try:
-    if path.exists():
-      lines = path.read_text(encoding='utf-8').splitlines()
-      rows = [json.loads(line) for line in lines]
-    else:
-      rows = journal.read(folder / JOURNAL)
-  except (OSError, ValueError) as error:
-    raise archive.ArchiveError(f'{path} cannot be read: {error}') from None
-  for row in rows:
-    if not isinstance(row, dict) or not row.keys() >= _FIELDS:
-      raise archive.ArchiveError(f'{path} must be results of a sweep')
-  if not rows:
-    raise archive.ArchiveError(f'{folder} holds no results of a sweep')
+      files.replace(folder / sweep_results.PROVENANCE, records.pretty(origin))
   return rows
 
 
 def _fly(
   jobs: Sequence[pool.Job], engine: Engine, total: int, shows: int
-) -> Iterator[dict[str, object]]:
+) -> Iterator[dict[str, Any]]:
   """Runs jobs behind a progress bar and yields their rows.
 
   Args:
@@ -163,7 +137,7 @@ def _fly(
     yield done.value
 
 
-def _csv(rows: Sequence[Mapping[str, object]]) -> str:
+def _csv(rows: Sequence[Mapping[str, Any]]) -> str:
   """One line for each observer of each case."""
   lines = []
   for row in rows:

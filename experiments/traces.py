@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 import dataclasses
 import pathlib
+from typing import Any
 import zipfile
 
 import numpy as np
@@ -150,14 +151,13 @@ def _read(arrays: Mapping[str, np.ndarray], name: str) -> Trace:
   paths_px = np.split(arrays[f'{name}.motion_px'], ends)[:-1]
   motions = [
     Motion(
-      *map(float, moments), path_px,
+      float(confirmed_s), float(begin_s), float(end_s), path_px,
       None if np.isnan(width_px) else float(width_px),
     )
-    for moments, path_px, width_px in zip(
+    for (confirmed_s, begin_s, end_s), path_px, width_px in zip(
       arrays[f'{name}.motion_s'], paths_px,
       arrays[f'{name}.motion_width_px'], strict=True,
     )
   ]  # fmt: skip
-  return Trace(
-    *(arrays[f'{name}.{field}'] for field in fields), motions=tuple(motions)
-  )
+  values: dict[str, Any] = {f: arrays[f'{name}.{f}'] for f in fields}
+  return Trace(**values, motions=tuple(motions))

@@ -7,17 +7,18 @@ the same command goes on where it was.
 from collections.abc import Mapping
 import dataclasses
 import pathlib
+from typing import Any
 
 from absl import flags
 
 from waggle_tasks import suites
-from waggle_tasks.experiments import launch, provenance, suite_runner
+from waggle_tasks.experiments import launch, provenance
 from waggle_tasks.protocol import checks
 
 # Flags defined here belong to the launcher that asks for them.
 flags.disclaim_key_flags()
 
-Results = Mapping[str, list[dict[str, object]]]
+Results = Mapping[str, list[dict[str, Any]]]
 
 
 @dataclasses.dataclass(frozen=True)
@@ -31,7 +32,7 @@ class Variant:
   """
 
   label: str
-  changes: dict[str, object] = dataclasses.field(default_factory=dict)
+  changes: dict[str, Any] = dataclasses.field(default_factory=dict)
   receiver: str = 'klt'
 
 
@@ -65,16 +66,18 @@ def run(command: str, variants: Mapping[str, Variant]) -> Results:
   Raises:
     WaggleError: if a flag names what does not exist, or the suite cannot run.
   """
-  suite, wanted, names = (
-    flags.FLAGS[name].value for name in ('suite', 'case', 'variant')
-  )
+  # Imported here: help needs no simulator.
+  from waggle_tasks.experiments import suite_runner
+
+  values: dict[str, Any] = flags.FLAGS.flag_values_dict()
+  suite, wanted, names = (values[name] for name in ('suite', 'case', 'variant'))
   cases = suites.find(suite)
   for name in wanted:
     checks.choice('case', name, [c.name for c in cases], suites.SuiteError)
   for name in names:
     checks.choice('variant', name, [*variants], suites.SuiteError)
-  cases = [c for c in cases if not wanted or c.name in wanted]
-  workers = launch.worker_count(flags.FLAGS['workers'])
+  chosen = [c for c in cases if not wanted or c.name in wanted]
+  workers = launch.worker_count('workers', values['workers'])
   results = {}
   for name in names or variants:
     variant = variants[name]
@@ -82,8 +85,8 @@ def run(command: str, variants: Mapping[str, Variant]) -> Results:
     line = provenance.command_line(
       command, [f'--suite={suite}', f'--variant={name}']
     )
-    folder = pathlib.Path(flags.FLAGS['output'].value) / name
-    moved = [_moved(case, variant) for case in cases]
+    folder = pathlib.Path(values['output']) / name
+    moved = [_moved(case, variant) for case in chosen]
     results[name] = suite_runner.run(
       moved, variant.receiver, folder, workers, line
     )

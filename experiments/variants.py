@@ -17,8 +17,11 @@ def _codebook(label: str, **sizes: float) -> variant_runner.Variant:
   return _moved(label, codebook=gestures.v_codebook(**sizes))
 
 
-def _look(label: str, **choices: object) -> variant_runner.Variant:
-  return _moved(label, appearance=appearance.Appearance(**choices))
+def _look(
+  label: str, floor: str = 'honeycomb', brightness: float = 1.0
+) -> variant_runner.Variant:
+  look = appearance.Appearance(floor, brightness=brightness)
+  return _moved(label, appearance=look)
 
 
 def _klt(change: str) -> variant_runner.Variant:

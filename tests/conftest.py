@@ -69,6 +69,29 @@ def waggle() -> Callable[..., subprocess.CompletedProcess[str]]:
   return run
 
 
+_BLOCK = """
+import importlib.abc
+import sys
+
+
+class Block(importlib.abc.MetaPathFinder):
+  def find_spec(self, name, path=None, target=None):
+    if name.startswith(('OpenGL', 'glfw', 'mujoco', 'dm_control._render')):
+      raise ImportError(f'there is no {name}', name=name)
+
+
+sys.meta_path.insert(0, Block())
+"""
+
+
+@pytest.fixture(scope='session')
+def no_gl(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
+  """The environment of a process that can import nothing that draws."""
+  folder = tmp_path_factory.mktemp('no_gl')
+  (folder / 'sitecustomize.py').write_text(_BLOCK, encoding='utf-8')
+  return {'MUJOCO_GL': 'disabled', 'PYTHONPATH': str(folder)}
+
+
 @pytest.fixture(scope='session')
 def short() -> dict[str, object]:
   """Scenario fields of a dance of half the length that every view can read.

@@ -83,6 +83,7 @@ def in_block(library: documents.Library, name: str, part: str) -> str:
     ('figures', 'far', 'wrong messages: 0', ': 0 in', ': 1 in'),
     ('figures', 'decoys', 'unauthorised', 'at most 0.', 'at most 0.0'),
     ('figures', 'paper', 'One observer', '1/1', '0/1'),
+    ('figures', 'paper', 'One observer', '1/1', ' - '),  # No count.
     ('figures', 'paper', 'messages correct', '68.4', '78.4'),
     ('figures', 'paper-view-bank', 'Half-span 45', 'Pass', 'Fail'),
     ('figures', 'sensitivity', 'seed 4', '44', '45'),

@@ -252,3 +252,8 @@ def test_a_wide_tolerance_takes_more() -> None:
 def test_a_tolerance_that_is_none_is_refused(field: str, value: float) -> None:
   with pytest.raises(clock.ClockError, match=f'`{field}` must be'):
     clock.Tolerance(**{field: value})
+
+
+def test_a_parser_with_a_clock_asks_for_the_moment() -> None:
+  with pytest.raises(TypeError, match='`moment` must be given'):
+    frame.Parser(clock=CLOCK).step(Symbol.NULL)

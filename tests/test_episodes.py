@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from waggle_tasks import registry, scenario
-from waggle_tasks.experiments import evaluator
+from waggle_tasks.experiments import evaluator, verdicts
 from waggle_tasks.experiments import rollout as rollout_lib
 
 PAYLOADS = ('000010', '000110', '001010', '100010')
-Played = tuple[scenario.Scenario, rollout_lib.Rollout, evaluator.Verdict]
+Played = tuple[scenario.Scenario, rollout_lib.Rollout, verdicts.Verdict]
 
 
 def play(name: str, **changes: object) -> Played:

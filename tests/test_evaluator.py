@@ -10,7 +10,7 @@ import pytest
 
 from waggle_tasks import scenario
 from waggle_tasks.agents import observer_agent, receiver, recogniser
-from waggle_tasks.experiments import evaluator
+from waggle_tasks.experiments import evaluator, verdicts
 from waggle_tasks.experiments import rollout as rollout_lib
 from waggle_tasks.experiments import traces as traces_lib
 from waggle_tasks.protocol import flight, frame, payload, schedule, timing
@@ -98,7 +98,7 @@ class Case:
     self.positions_m[name][frames] += np.array([offset_m, 0.0, 0.0])
 
   @property
-  def verdict(self) -> evaluator.Verdict:
+  def verdict(self) -> verdicts.Verdict:
     rollout = rollout_lib.Rollout(
       times_s=TIMES_S,
       positions_m=self.positions_m,

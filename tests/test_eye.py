@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from waggle_tasks import appearance
-from waggle_tasks.entities import eye
+from waggle_tasks.entities import optics
 
 Fixture = Callable[..., object]
 Load = Callable[..., composer.Environment]
@@ -89,7 +89,7 @@ def test_the_eye_is_a_pinhole_of_60_degrees(
   physics.forward()
   rows, columns = np.nonzero((empty != camera(physics)).any(axis=2))
   # Its eye is a little ahead of it, so nearer than 1.3 m to the performer.
-  focal_px = 240 / math.tan(math.radians(30)) / (1.3 - eye.OFFSET_M)
+  focal_px = 240 / math.tan(math.radians(30)) / (1.3 - optics.OFFSET_M)
   middle = (columns.min() + columns.max()) / 2, (rows.min() + rows.max()) / 2
   expected = 320 + focal_px * side_m, 240 - focal_px * up_m
   assert middle == pytest.approx(expected, abs=6)

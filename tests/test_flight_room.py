@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from waggle_tasks import appearance
-from waggle_tasks.arenas import flight_room, layouts
+from waggle_tasks.arenas import bounds, flight_room, layouts
 from waggle_tasks.entities import crazyflie
 
 Appearance = appearance.Appearance
@@ -66,11 +66,11 @@ def test_every_vehicle_starts_above_a_pad_of_its_own(
 @pytest.mark.parametrize(
   ('velocity_mps', 'axis', 'limit_m'),
   [
-    ((6, 0, 0), 0, flight_room.HALF_WIDTH_M),
-    ((-6, 0, 0), 0, flight_room.HALF_WIDTH_M),
-    ((0, 6, 0), 1, flight_room.HALF_DEPTH_M),
-    ((0, -6, 0), 1, flight_room.HALF_DEPTH_M),
-    ((0, 0, 6), 2, flight_room.HEIGHT_M),
+    ((6, 0, 0), 0, bounds.HALF_WIDTH_M),
+    ((-6, 0, 0), 0, bounds.HALF_WIDTH_M),
+    ((0, 6, 0), 1, bounds.HALF_DEPTH_M),
+    ((0, -6, 0), 1, bounds.HALF_DEPTH_M),
+    ((0, 0, 6), 2, bounds.HEIGHT_M),
     ((0, 0, -6), 2, 0.0),
   ],
 )

@@ -187,6 +187,32 @@ def test_a_renderer_without_a_display_ends_with_the_line_that_mends_it(
   )
 
 
+@pytest.mark.parametrize(
+  'body',
+  [
+    "raise ZeroDivisionError('ours')",
+    "raise ImportError('no such thing', name='scipy')",
+    "from OpenGL import GL; raise ZeroDivisionError('after it')",
+  ],
+)
+def test_where_nothing_renders_a_mistake_of_ours_keeps_its_traceback(
+  toy: Launch, body: str
+) -> None:
+  child = toy(body, MUJOCO_GL='disabled')
+  assert child.returncode == 1
+  assert child.stderr.startswith('Traceback')
+  assert 'cannot render' not in child.stderr
+
+
+def test_a_graphics_library_that_is_not_there_is_told_in_one_line(
+  toy: Launch, no_gl: dict[str, str]
+) -> None:
+  child = toy('import OpenGL', **no_gl)
+  assert child.returncode == 2
+  (said,) = child.stderr.splitlines()
+  assert said.startswith('waggle toy: cannot render with MUJOCO_GL=disabled')
+
+
 def test_help_needs_no_gl(toy: Launch) -> None:
   child = toy('from dm_control import mujoco', '--help', **NO_GL)
   assert (child.returncode, child.stderr) == (0, '')

@@ -15,6 +15,7 @@ import pytest
 
 from waggle_tasks import registry, scenario
 from waggle_tasks.agents import receivers
+from waggle_tasks.experiments import identity as identity_lib
 from waggle_tasks.experiments import (
   outside,
   provenance,
@@ -78,7 +79,7 @@ def registered(monkeypatch: pytest.MonkeyPatch) -> Callable[[object], None]:
 
 
 def identity(name: str = 'mine', scene: scenario.Scenario = SCENE) -> str:
-  return records.identity(scene, name, 'a')
+  return identity_lib.of(scene, name, 'a')
 
 
 def test_what_the_project_brings_has_no_source_outside() -> None:

@@ -62,7 +62,8 @@ def expected() -> set[str]:
   names = set()
   for folder, place in places.items():
     for path in (ROOT / folder).rglob('*'):
-      if path.suffix in ('.py', '.xml', '.json', '.css', '.js'):
+      kinds = '.py', '.xml', '.json', '.css', '.js', '.typed'
+      if path.suffix in kinds:
         names.add(f'{place}/{path.relative_to(ROOT / folder).as_posix()}')
     names |= {
       f'{place}/new_package/__init__.py',

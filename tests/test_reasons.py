@@ -14,7 +14,7 @@ import pytest
 from waggle_tasks import registry, scenario
 from waggle_tasks.agents import observer_agent
 from waggle_tasks.arenas import layouts
-from waggle_tasks.experiments import evaluator, nulls
+from waggle_tasks.experiments import episode, evaluator, nulls, verdicts
 from waggle_tasks.experiments import rollout as rollout_lib
 from waggle_tasks.protocol import timing
 
@@ -42,8 +42,8 @@ def play() -> Iterator[Callable[..., tuple]]:
     scene: scenario.Scenario,
     receiver_name: str,
     change: Callable[[composer.Environment], object] = lambda environment: None,
-    watch: rollout_lib.Watcher = lambda *seen: None,
-  ) -> tuple[rollout_lib.Rollout, evaluator.Outcome]:
+    watch: episode.Watcher = lambda *seen: None,
+  ) -> tuple[rollout_lib.Rollout, verdicts.Outcome]:
     environment = registry.environment(scene)
     made.append(environment)
     change(environment)

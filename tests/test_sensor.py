@@ -299,3 +299,14 @@ def test_a_suite_can_name_any_disturbance() -> None:
   assert case.scene.sensor == Sensor(noise_sigma=5, late_frames=2)
   with pytest.raises(suites.SuiteError, match='Did you mean noise_sigma'):
     suites.from_rows([{'name': 'bad', 'sensor': {'noise_sigmas': 5}}])
+
+
+def test_a_late_image_that_nobody_asked_for_is_the_present_one() -> None:
+  each = feed.Feed(Sensor(late_frames=1), np.random.RandomState(0))
+  came = []
+  for frame in range(6):
+    each.advance(frame * 0.04)
+    if frame % 2 == 0:  # As with an update interval of two frames.
+      picture = np.full((2, 4, 3), frame, np.uint8)
+      came.append(each.image(picture)[0, 0, 0])
+  assert came == [0, 2, 4]

@@ -1,9 +1,11 @@
 """waggle_tasks: a motion-communication task suite for dm_control composer.
 
-Importing this package imports neither dm_control nor mujoco: it picks a GL
-backend where none would work, and names a broken pair of versions.
+Importing this package imports neither dm_control nor mujoco, nor does any name
+of it but `load`, when it is called. It picks a GL backend where none would
+work.
 """
 
+import importlib
 import os
 import sys
 from typing import TYPE_CHECKING
@@ -14,13 +16,52 @@ from waggle_tasks._version import __version__
 if TYPE_CHECKING:
   from dm_control import composer
 
-__all__ = ['__version__', 'load']
+  from waggle_tasks.agents import receivers
+  from waggle_tasks.agents.observer_agent import Team
+  from waggle_tasks.arenas import layouts
+  from waggle_tasks.errors import WaggleError
+  from waggle_tasks.protocol.agreement import Agreement
+  from waggle_tasks.scenario import Scenario
+
+__all__ = [
+  'Agreement',
+  'Scenario',
+  'Team',
+  'WaggleError',
+  '__version__',
+  'layouts',
+  'load',
+  'receivers',
+]
+
+# Where names are that are imported when they are first asked for.
+_HOMES = {
+  'Agreement': 'protocol.agreement',
+  'Scenario': 'scenario',
+  'Team': 'agents.observer_agent',
+  'WaggleError': 'errors',
+  'layouts': 'arenas.layouts',
+  'receivers': 'agents.receivers',
+}
 
 if _gl := runtime.default_gl(os.environ, sys.platform):
   os.environ['MUJOCO_GL'] = _gl
   runtime.choose_again(sys.modules)
-if not runtime.reports_versions(sys.argv, sys.orig_argv):
-  runtime.require_versions()
+
+
+def __getattr__(name: str) -> object:
+  if name not in _HOMES:
+    raise AttributeError(f'module {__name__!r} has no attribute {name!r}')
+  home = _HOMES[name]
+  value = importlib.import_module(f'{__name__}.{home}')
+  if not home.endswith(f'.{name}'):
+    value = getattr(value, name)
+  globals()[name] = value  # Asked for once.
+  return value
+
+
+def __dir__() -> list[str]:
+  return sorted({*globals(), *__all__})
 
 
 def load(name: str, **changes: object) -> 'composer.Environment':
@@ -36,9 +77,8 @@ def load(name: str, **changes: object) -> 'composer.Environment':
   Raises:
     WaggleError: The name, a field or a value is not valid; the message lists
       the valid choices.
+    VersionError: dm-control cannot run on the installed mujoco.
   """
-  # Imported here, because the agents' side of the package must not reach
-  # dm_control.
   from waggle_tasks import registry
 
   return registry.load(name, **changes)

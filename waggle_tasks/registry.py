@@ -1,53 +1,24 @@
 """Tasks by name, and how one is built from a scenario."""
 
-import dataclasses
-
 from dm_control import composer
 import mujoco
 
-from waggle_tasks import runtime
+from waggle_tasks import runtime, scenarios
 from waggle_tasks import scenario as scenario_lib
 from waggle_tasks.arenas import flight_room
 from waggle_tasks.entities import observer, performer
-from waggle_tasks.protocol import checks, decoys
-from waggle_tasks.tasks import broadcast, controls, copies
+from waggle_tasks.protocol import decoys
+from waggle_tasks.tasks import broadcast, controls, copies, furnish
 from waggle_tasks.tasks import parts as parts_lib
 
 runtime.require_versions(mujoco.__version__)
 
+SCENARIOS, find = scenarios.SCENARIOS, scenarios.find
 Scenario = scenario_lib.Scenario
 
 
 class Environment(copies.Uncopied, composer.Environment):
   """A composer environment that says why it cannot be copied."""
-
-
-SCENARIOS = {
-  'broadcast': Scenario(),
-  'no_send': Scenario(control='no_send'),
-  'black_input': Scenario(control='black_input'),
-  'interrupted': Scenario(control='interrupted'),
-  **{name: Scenario(control=name) for name in decoys.DECOYS},
-}
-
-
-def find(name: str, **changes: object) -> Scenario:
-  """The scenario of a name, with some of its fields changed.
-
-  Args:
-    name: One of `SCENARIOS`.
-    **changes: Fields of `Scenario` and their new values.
-
-  Raises:
-    ScenarioError: if the name or a field is not known, with the close ones,
-      or if a value breaks a rule.
-  """
-  error = scenario_lib.ScenarioError
-  checks.choice('task', name, [*SCENARIOS], error)
-  fields = [field.name for field in dataclasses.fields(Scenario)]
-  for field in changes:
-    checks.choice('field', field, fields, error)
-  return dataclasses.replace(SCENARIOS[name], **changes)
 
 
 def build(scenario: Scenario) -> broadcast.Broadcast:
@@ -73,7 +44,7 @@ def build(scenario: Scenario) -> broadcast.Broadcast:
     jitter_m=scenario.jitter_m,
     drift=scenario.drift,
   )
-  scenario.surroundings.furnish(parts.room, parts.poses)
+  furnish.furnish(parts.room, scenario.surroundings, parts.poses)
   match scenario.control:
     case 'no_send':
       return controls.NoSend(parts)
@@ -107,6 +78,6 @@ def load(name: str, **changes: object) -> Environment:
     The environment; close it in the thread that made it.
 
   Raises:
-    ScenarioError: see `find`.
+    ScenarioError: see `scenarios.find`.
   """
   return environment(find(name, **changes))

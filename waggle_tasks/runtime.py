@@ -4,11 +4,9 @@ Pure standard library: nothing here imports mujoco or dm_control, so a broken
 pair is named in one sentence instead of failing deep inside a simulation.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 import importlib
 from importlib import metadata
-import itertools
-import pathlib
 import re
 import types
 
@@ -17,12 +15,6 @@ import types
 MUJOCO_FIRST = (3, 17)
 MUJOCO_BEYOND = (4, 0)
 MUJOCO_PIN = 'mujoco>=3.17,<4'
-
-# Modules that check the versions themselves and report them in their own way.
-_REPORTERS = (
-  'waggle_tasks.experiments.main',
-  'waggle_tasks.experiments.doctor',
-)
 
 
 class VersionError(ImportError):
@@ -99,23 +91,3 @@ def require_versions(mujoco: str | None = None) -> None:
   )
   if problem:
     raise VersionError(problem, name='mujoco')
-
-
-def reports_versions(argv: Sequence[str], orig_argv: Sequence[str]) -> bool:
-  """Whether this process is the `waggle` command.
-
-  It must start on a broken pair too: `waggle doctor` is how a user finds out,
-  and the other commands refuse in one line of their own.
-
-  Args:
-    argv: `sys.argv`; while `python -m` looks for its module it is `['-m', ..]`.
-    orig_argv: `sys.orig_argv`, which names that module.
-  """
-  if not argv:
-    return False
-  if argv[0] != '-m':
-    return pathlib.PurePath(argv[0]).stem == 'waggle'
-  return any(
-    flag == '-m' and module in _REPORTERS
-    for flag, module in itertools.pairwise(orig_argv)
-  )

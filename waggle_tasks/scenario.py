@@ -1,13 +1,15 @@
 """A scenario: every choice of one episode, frozen and checked."""
 
+from collections.abc import Callable
 import dataclasses
 import math
+from typing import Any
 
 from waggle_tasks import appearance as appearance_lib
 from waggle_tasks import errors
 from waggle_tasks import sensor as sensor_lib
-from waggle_tasks.arenas import flight_room, layouts
-from waggle_tasks.entities import eye, observer
+from waggle_tasks.arenas import bounds, layouts
+from waggle_tasks.entities import optics
 from waggle_tasks.protocol import agreement as agreement_lib
 from waggle_tasks.protocol import (
   checks,
@@ -31,7 +33,7 @@ NO_SEND_S = 10.0  # Paper, section 'Controls and supplemental suite'.
 INTERRUPTED_S = 60.0  # The same.
 MAX_OBSERVERS = 64
 # Fields that are values of their own, and what makes one from plain numbers.
-PARTS = {
+PARTS: dict[str, Callable[..., Any]] = {
   'codebook': gestures.v_codebook,
   'pauses': timing.Timing,
   'tolerance': clock.Tolerance,
@@ -76,7 +78,7 @@ class Scenario:
     surroundings: What else moves in it.
     drift: How far vehicles wander from where they should be.
     sensor: What spoils the observers' images.
-    camera: One of `observer.CAMERAS`; both give the same picture.
+    camera: One of `optics.CAMERAS`; both give the same picture.
     eye_offset_m: How far an observer's eye is ahead of its centre of mass.
   """
 
@@ -102,7 +104,7 @@ class Scenario:
   drift: drift_lib.Drift = drift_lib.Drift()
   sensor: sensor_lib.Sensor = sensor_lib.Sensor()
   camera: str = 'incremental'
-  eye_offset_m: float = eye.OFFSET_M
+  eye_offset_m: float = optics.OFFSET_M
 
   def __post_init__(self) -> None:
     for field in dataclasses.fields(self):
@@ -113,7 +115,7 @@ class Scenario:
           f' got {value!r}'
         )
     checks.choice('control', self.control, CONTROLS, ScenarioError)
-    checks.choice('camera', self.camera, observer.CAMERAS, ScenarioError)
+    checks.choice('camera', self.camera, optics.CAMERAS, ScenarioError)
     counts = {'observers': (1, MAX_OBSERVERS), 'seed': (0, 2**32 - 1)}
     checks.settle_numbers(self, counts, ScenarioError)
     bounds = {
@@ -198,7 +200,7 @@ class Scenario:
     for index, pose in enumerate(places):
       poses[f'observer_{index + 1}'] = pose
     for name, pose in poses.items():
-      flight_room.check_inside(name, pose)
+      bounds.check_inside(name, pose)
     # Two neighbours can come closer by the jitter of both, along x and y, and
     # by the drift of both.
     nearer_m = 2 * math.hypot(self.jitter_m, self.jitter_m) + self.drift.near_m
@@ -206,7 +208,9 @@ class Scenario:
     return poses
 
   def _layout(self) -> layouts.Layout:
-    if callable(getattr(self.layout, 'poses', None)):
+    if not isinstance(self.layout, str) and callable(
+      getattr(self.layout, 'poses', None)
+    ):
       return self.layout
     checks.choice('layout', self.layout, LAYOUTS, ScenarioError)
     if self.layout == 'arc':

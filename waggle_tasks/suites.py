@@ -8,8 +8,9 @@ from collections.abc import Mapping, Sequence
 import dataclasses
 import inspect
 import re
+from typing import Any
 
-from waggle_tasks import errors, registry
+from waggle_tasks import errors, scenarios
 from waggle_tasks import scenario as scenario_lib
 from waggle_tasks.protocol import checks
 
@@ -64,7 +65,7 @@ class Case:
 
 
 # name, label, correct, passed, changes
-_STANDARD = (
+_STANDARD: tuple[tuple[str, str, int, bool, dict[str, Any]], ...] = (
   ('default', 'Default, forward', 3, True, {}),
   ('heading-45', '000110, heading 45 deg', 3, True, {'payload': '000110'}),
   ('heading-90', '001010, heading 90 deg', 3, True, {'payload': '001010'}),
@@ -87,7 +88,7 @@ _STANDARD = (
   ('span-40-backward', 'Half-span 40 deg, 100010', 3, False,
    {'observers': 5, 'half_span_deg': 40.0, 'payload': '100010'}),
 )  # fmt: skip
-_SUPPLEMENTAL = (
+_SUPPLEMENTAL: tuple[tuple[str, str, int, bool, dict[str, Any]], ...] = (
   ('four-forward', 'Default geometry, forward', 4, True, {'observers': 4}),
   ('five-forward', 'Default geometry, forward', 5, True, {'observers': 5}),
   ('five-backward', 'Default geometry, 100010', 5, True,
@@ -107,7 +108,7 @@ def _cases() -> dict[str, tuple[Case, ...]]:
         name.replace('.', '-'),
         group,
         label,
-        registry.find('broadcast', **changes),
+        scenarios.find('broadcast', **changes),
         Published(correct, passed),
       )
       for name, label, correct, passed, changes in table
@@ -119,7 +120,7 @@ def _cases() -> dict[str, tuple[Case, ...]]:
   }
   suites['controls'] = tuple(
     Case(
-      name, 'controls', label, registry.find(task), Published(correct, True)
+      name, 'controls', label, scenarios.find(task), Published(correct, True)
     )
     for name, label, correct, task in _CONTROLS
   )  # fmt: skip
@@ -140,11 +141,11 @@ def find(name: str) -> tuple[Case, ...]:
   return SUITES[name]
 
 
-def from_rows(rows: Sequence[Mapping[str, object]]) -> tuple[Case, ...]:
+def from_rows(rows: Sequence[Mapping[str, Any]]) -> tuple[Case, ...]:
   """The cases of a user's own suite.
 
   Args:
-    rows: For each case a `name`, optionally a `task` of `registry.SCENARIOS`
+    rows: For each case a `name`, optionally a `task` of `scenarios.SCENARIOS`
       ('broadcast' by default), a `group` ('own') and a `label`, and any
       fields of `Scenario` that differ from the task's.
 
@@ -165,7 +166,7 @@ def from_rows(rows: Sequence[Mapping[str, object]]) -> tuple[Case, ...]:
     label = changes.pop('label', '')
     text = ', '.join(f'{key} = {value}' for key, value in changes.items())
     try:
-      scene = registry.find(task, **_parts(changes))
+      scene = scenarios.find(task, **_parts(changes))
       cases.append(Case(name, group, label or text or task, scene))
     except errors.WaggleError as error:
       raise SuiteError(f'case {number} ({name}): {error}') from None
@@ -177,7 +178,7 @@ def from_rows(rows: Sequence[Mapping[str, object]]) -> tuple[Case, ...]:
   return tuple(cases)
 
 
-def _parts(changes: Mapping[str, object]) -> dict[str, object]:
+def _parts(changes: Mapping[str, Any]) -> dict[str, Any]:
   """Makes the values of their own that a row gives as tables of numbers."""
   out = dict(changes)
   for field, make in scenario_lib.PARTS.items():

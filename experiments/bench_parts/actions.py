@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 import dataclasses
 import os
+from typing import Any
 
 import tqdm
 
@@ -30,11 +31,11 @@ class Outcome:
   """
 
   text: str
-  found: Mapping[str, object]
+  found: Mapping[str, Any]
   passed: bool = True
 
 
-def machine() -> dict[str, object]:
+def machine() -> dict[str, Any]:
   """What measurements depend on, before they begin."""
   return {
     'renderer': gl.render_once().renderer,
@@ -45,7 +46,7 @@ def machine() -> dict[str, object]:
 
 
 def measure(
-  here: Mapping[str, object], only: Sequence[str], settings: sections.Settings
+  here: Mapping[str, Any], only: Sequence[str], settings: sections.Settings
 ) -> Outcome:
   """Measures parts of the benchmark.
 

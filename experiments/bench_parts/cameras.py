@@ -88,8 +88,8 @@ def fly(scene: scenario.Scenario) -> Flight:
           pilot.accept(command, position_m, time_s)
         action.append(pilot.step(position_m, time_s).to_array())
       timestep = environment.step(action)
-  qpos = np.stack(qpos)
-  return Flight(qpos, tuple(_phases(qpos)))
+  whole = np.stack(qpos)
+  return Flight(whole, tuple(_phases(whole)))
 
 
 def _phases(qpos: np.ndarray) -> Iterator[str]:
@@ -197,7 +197,7 @@ def _draw_flight(
   studios: Mapping[str, _Studio], flight: Flight
 ) -> dict[str, list[float]]:
   """Seconds for an image, by camera, of each frame that it drew."""
-  spent = {name: [] for name in studios}
+  spent: dict[str, list[float]] = {name: [] for name in studios}
   stretches = min(_STRETCHES, len(flight.qpos))
   for stretch in np.array_split(flight.qpos, stretches):
     for name, studio in studios.items():

@@ -6,7 +6,7 @@ import dataclasses
 import cv2
 
 from waggle_tasks import suites
-from waggle_tasks.entities import observer
+from waggle_tasks.entities import optics
 from waggle_tasks.experiments import job_progress, pool, records, rollout
 from waggle_tasks.experiments.bench_parts import loops
 from waggle_tasks.protocol import timing
@@ -44,7 +44,7 @@ def compare(cases: Sequence[suites.Case], workers: int) -> Iterator[Verdict]:
   jobs = [
     pool.Job(f'{case.name} {camera}', _fly, (case, camera))
     for case in cases
-    for camera in observer.CAMERAS
+    for camera in optics.CAMERAS
   ]
   logs: dict[str, dict[str, list[str]]] = {case.name: {} for case in cases}
   frames = {
@@ -55,8 +55,8 @@ def compare(cases: Sequence[suites.Case], workers: int) -> Iterator[Verdict]:
     case, camera = done.job.arguments
     found = logs[case.name]
     found[camera] = done.value
-    if len(found) == len(observer.CAMERAS):
-      one, other = (found[camera] for camera in observer.CAMERAS)
+    if len(found) == len(optics.CAMERAS):
+      one, other = (found[camera] for camera in optics.CAMERAS)
       yield Verdict(case.name, len(one), difference(one, other))
 
 

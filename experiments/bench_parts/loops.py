@@ -9,7 +9,7 @@ import dm_env
 
 from waggle_tasks import scenario
 from waggle_tasks.agents import observer_agent
-from waggle_tasks.experiments import rollout
+from waggle_tasks.experiments import episode, rollout
 from waggle_tasks.experiments.bench_parts import processes
 from waggle_tasks.protocol import timing
 
@@ -70,7 +70,7 @@ class _Watch:
 def run(
   scene: scenario.Scenario,
   clock: processes.Clock = time.perf_counter,
-  watchers: Sequence[rollout.Watcher] = (),
+  watchers: Sequence[episode.Watcher] = (),
 ) -> Loop:
   """Runs a broadcast with the paper's receiver.
 

@@ -4,7 +4,7 @@ from dm_control import composer
 import dm_env
 
 from waggle_tasks import scenario
-from waggle_tasks.agents import observer_agent, receivers
+from waggle_tasks.agents import observer_agent, receiver, receivers
 from waggle_tasks.experiments.bench_parts import loops, processes
 
 
@@ -18,7 +18,7 @@ class Audience:
   def __init__(self, scene: scenario.Scenario, clock: processes.Clock) -> None:
     """Makes new receivers for every observer of a scenario."""
     self._clock = clock
-    self._readers = {
+    self._readers: dict[str, list[receiver.Receiver | None]] = {
       name: [
         receivers.make(name, scene.agreement) for _ in range(scene.observers)
       ]
@@ -36,10 +36,11 @@ class Audience:
     del environment, team
     for name, readers in self._readers.items():
       for index, each in enumerate(timestep.observation):
-        if readers[index] is None:
+        reader = readers[index]
+        if reader is None:
           continue
         begin_s = self._clock()
-        events = readers[index].step(each['camera'], float(each['time_s']))
+        events = reader.step(each['camera'], float(each['time_s']))
         self.seconds[name].append(self._clock() - begin_s)
         if any(event.message for event in events):
           readers[index] = None

@@ -4,8 +4,9 @@ Every number is a median over repeats; a ratio is the median of the ratios of
 numbers that were measured one after the other.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 import statistics
+from typing import Any
 
 from waggle_tasks.experiments import table
 from waggle_tasks.experiments.bench_parts import (
@@ -35,7 +36,7 @@ def _number(value: float, digits: int = 2) -> str:
 
 def _by_observers(found: Sequence[loops.Loop]) -> dict[int, list[float]]:
   """Seconds for each image, by the number of observers."""
-  out = {}
+  out: dict[int, list[float]] = {}
   for loop in found:
     out.setdefault(loop.observers, []).append(loop.receiver_frame_s)
   return out
@@ -79,7 +80,7 @@ def _stages(found: Sequence[Mapping[str, float]]) -> str:
   }
   total_s = sum(median_s.values())
   rest_s = median_s.pop(stages.OTHER)
-  order = sorted(median_s, key=median_s.get, reverse=True)
+  order = sorted(median_s, key=lambda name: median_s[name], reverse=True)
   shown = {name: median_s[name] for name in order}
   shown |= {stages.OTHER: rest_s, 'all of it': total_s}
   rows = [
@@ -182,7 +183,7 @@ def _workers(found: Mapping[int, Sequence[float]]) -> str:
   return table.render(header, rows)
 
 
-_TABLES = {
+_TABLES: dict[str, Callable[..., str]] = {
   'cameras': _cameras,
   'stages': _stages,
   'receivers': _receivers,
@@ -191,7 +192,7 @@ _TABLES = {
   'memory': _memory,
   'workers': _workers,
 }
-_RATIOS = {
+_RATIOS: dict[str, Callable[..., Ratios]] = {
   'cameras': _camera_ratios,
   'receivers': _receiver_ratios,
   'realtime': _realtime_ratios,
@@ -200,20 +201,20 @@ _RATIOS = {
 }
 
 
-def ratios(results: Mapping[str, object]) -> Ratios:
+def ratios(results: Mapping[str, Any]) -> Ratios:
   """Every ratio, by its title.
 
   Args:
     results: What parts of `sections.SECTIONS` measured, by name.
   """
-  out = {}
+  out: Ratios = {}
   for name, found in results.items():
     if name in _RATIOS:
       out |= _RATIOS[name](found)
   return out
 
 
-def text(results: Mapping[str, object]) -> str:
+def text(results: Mapping[str, Any]) -> str:
   """Every ratio, then a table for each part."""
   parts = []
   if all_ratios := ratios(results):

@@ -205,7 +205,8 @@ def _compare(
   rng: np.random.RandomState,
 ) -> Iterator[Comparison]:
   ours, whole = incremental(scene.physics), renderer.Renderer(scene.physics)
-  for change in rng.choice(CHANGES, size=_STEPS, p=_ODDS):
+  for number in rng.choice(len(CHANGES), size=_STEPS, p=_ODDS):
+    change = CHANGES[number]
     change(scene)
     first, *others = scene.cameras
     for camera in [first, *rng.permutation(others)[:1]]:

@@ -5,7 +5,7 @@ are replaced by ones that tell a clock which stage begins and ends. A stage
 inside another is not counted twice.
 """
 
-from collections import Counter
+import collections
 from collections.abc import Callable, Iterator
 import contextlib
 import dataclasses
@@ -81,7 +81,7 @@ class Timer:
       clock: What it reads.
     """
     self._clock = clock
-    self.seconds: Counter[str] = Counter()
+    self.seconds: dict[str, float] = collections.defaultdict(float)
     self.steps = 0
     self._stage = OTHER
     self._since_s = 0.0

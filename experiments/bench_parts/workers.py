@@ -20,7 +20,7 @@ def measure(scene: scenario.Scenario, repeats: int) -> dict[int, list[float]]:
   closes it. Processes start, and run a broadcast of two frames, before they
   are measured.
   """
-  out = {count: [] for count in COUNTS}
+  out: dict[int, list[float]] = {count: [] for count in COUNTS}
   with contextlib.ExitStack() as stack:
     team = [stack.enter_context(processes.worker()) for _ in range(max(COUNTS))]
     _run(team, dataclasses.replace(scene, duration_s=2 * timing.FRAME_S))

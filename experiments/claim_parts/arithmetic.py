@@ -3,7 +3,7 @@
 A count that was changed by hand no longer has its limits, or its total.
 """
 
-from collections.abc import Container, Iterator
+from collections.abc import Callable, Container, Iterator
 import re
 
 from waggle_tasks import suites
@@ -82,7 +82,7 @@ def _lines(block: documents.Block) -> _Found:
     yield _same(block.place(index), line, made)
 
 
-def _try(make: object, *arguments: object) -> str:
+def _try(make: Callable[..., str], *arguments: object) -> str:
   """What a function makes of counts, which may be impossible ones."""
   try:
     return make(*arguments)
@@ -114,23 +114,26 @@ def _suite(block: documents.Block) -> _Found:
 
 def _result(row: tuple[str, ...], control: bool) -> suite_tables.Row:
   """A line of a suite, as much of it as its totals need."""
-  correct, theirs = finding.fraction(row[2]), finding.fraction(row[3])
+  (correct, _), (theirs, _) = (
+    finding.fraction(cell) or (0, 0) for cell in row[2:4]
+  )
   return {
     'observers': int(row[1]),
     'expecting': None if control else int(row[1]),
-    'correct': correct[0],
+    'correct': correct,
     'passed': row[4] == 'Pass',
-    'published': {'correct': theirs[0], 'passed': row[5] == 'Pass'},
+    'published': {'correct': theirs, 'passed': row[5] == 'Pass'},
   }
 
 
 def _moved(block: documents.Block) -> _Found:
   """Counts of a moved choice are the paper's but for the rows it names."""
   paper = suites.find('standard')
-  correct = sum(case.published.correct for case in paper)
-  passed = sum(case.published.passed for case in paper)
+  known = {c.name: c.published for c in paper if c.published is not None}
+  correct = sum(each.correct for each in known.values())
+  passed = sum(each.passed for each in known.values())
   of = sum(case.scene.observers for case in paper)
-  was = {case.name: case.published.passed for case in paper}
+  was = {name: each.passed for name, each in known.items()}
   for table in block.tables:
     if table.header[-1] != 'rows unlike the paper':
       continue

@@ -7,6 +7,7 @@ together take less than 30 minutes on two cores.
 
 from collections.abc import Sequence
 import dataclasses
+from typing import Any
 
 TEXT, ROWS, CELLS, PART, PATTERN = 'text', 'rows', 'cells', 'part', 'pattern'
 COPY, SUM, UNCHECKED = 'copy', 'sum', 'unchecked'
@@ -59,7 +60,7 @@ class Sentence:
   source: str
 
 
-_DECOYS = {
+_DECOYS: dict[str, Any] = {
   'control': 'circles,diagonals,random_walk,navigation,swapped,repeated,'
   'half_frame'
 }  # fmt: skip
@@ -98,7 +99,8 @@ def _hidden(receiver: str) -> Claim:
 
 
 def _disturbed(table: int, *flags: str, **grid: str) -> Claim:
-  return _sweep('disturbances', 2, *flags, table=table, **grid)
+  values: dict[str, Any] = grid  # None of the names of other arguments.
+  return _sweep('disturbances', 2, *flags, table=table, **values)
 
 
 _SWAY = '--observer_drift_m=0.002', '--observer_yaw_drift_deg=0.1'

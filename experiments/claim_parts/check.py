@@ -8,7 +8,7 @@ import sys
 import tempfile
 
 from waggle_tasks import errors
-from waggle_tasks.experiments import sweep_runner
+from waggle_tasks.experiments import sweep_results
 from waggle_tasks.experiments.claim_parts import (
   arithmetic,
   book,
@@ -59,7 +59,7 @@ def claim(
       case book.ROWS:
         return compare.rows(block, printed)
       case book.CELLS:
-        rows = sweep_runner.read(folder)
+        rows = sweep_results.read(folder)
         return compare.cells(block, rows, each.table)
       case book.PATTERN:
         return compare.pattern(block, printed, each.detail)

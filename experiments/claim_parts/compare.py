@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Mapping, Sequence
 import itertools
 import re
+from typing import Any
 
 from waggle_tasks.experiments import envelope, heat, sweep_tables
 from waggle_tasks.experiments.claim_parts import documents, finding
@@ -97,7 +98,7 @@ def cells(
 def _cell(
   block: documents.Block,
   tables: Sequence[documents.Table],
-  cell: Mapping[str, object],
+  cell: Mapping[str, Any],
   members: Sequence[envelope.Row],
 ) -> finding.Finding | None:
   got = envelope.count(members)
@@ -114,7 +115,7 @@ def _cell(
 
 
 def _place(
-  table: documents.Table, cell: Mapping[str, object]
+  table: documents.Table, cell: Mapping[str, Any]
 ) -> tuple[int, int] | None:
   """Row and column of a cell in a table; None when it is in another."""
   names = [name for name in table.header[0].split(' \\ ') if name != 'all']

@@ -145,16 +145,18 @@ def read(root: pathlib.Path) -> Library:
 
 def _blocks(name: str, lines: Sequence[str]) -> list[tuple[str | None, Block]]:
   """Every block of a document that is no command, and its claim."""
-  out, claim, begun, shell = [], None, None, False
+  out: list[tuple[str | None, Block]] = []
+  claim: str | None = None
+  begun, shell = 0, False  # The line that began the block, from 1.
   for number, line in enumerate(lines, 1):
-    if begun is None and (mark := _MARK.match(line)):
+    if not begun and (mark := _MARK.match(line)):
       claim = mark[1]
-    elif begun is None and line.startswith('```'):
+    elif not begun and line.startswith('```'):
       begun, shell = number, line[3:] in _SHELL
     elif line == '```':
       if not shell:
         body = tuple(lines[begun : number - 1])
         out.append((claim, Block(name, begun + 1, body)))
         claim = None
-      begun = None
+      begun = 0
   return out

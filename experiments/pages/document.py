@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 import functools
 import json
 import pathlib
+from typing import Any
 
 from waggle_tasks.experiments import files
 from waggle_tasks.experiments.pages import markup
@@ -16,7 +17,7 @@ tag = markup.tag
 def page(
   title: str,
   body: Sequence[markup.Content],
-  facts: Mapping[str, object] | None = None,
+  facts: Mapping[str, Any] | None = None,
 ) -> markup.Markup:
   """A whole page with its style, and what its script needs to know."""
   script = None

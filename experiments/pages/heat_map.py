@@ -1,5 +1,7 @@
 """A map of an envelope as inline SVG: a cell for each pair of values."""
 
+from collections.abc import Sequence
+
 from waggle_tasks.experiments import envelope, heat, palette
 from waggle_tasks.experiments.pages import markup, plot
 
@@ -43,7 +45,9 @@ def draw(panel: envelope.Panel) -> markup.Markup:
   )  # fmt: skip
 
 
-def _cell(x: float, y: float, rows: list[envelope.Row]) -> list[markup.Markup]:
+def _cell(
+  x: float, y: float, rows: Sequence[envelope.Row]
+) -> list[markup.Markup]:
   share, words = heat.share(rows)
   fill = heat.colour(share)
   return [

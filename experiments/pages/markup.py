@@ -2,8 +2,9 @@
 
 from collections.abc import Iterable
 import html
+from typing import TypeAlias
 
-Content = 'Markup | str | float | None'
+Content: TypeAlias = 'Markup | str | float | None'
 
 # Elements that never have content (HTML standard, section 'Void elements').
 _VOID = {'meta', 'img', 'br', 'hr', 'input', 'link', 'source'}
@@ -15,7 +16,7 @@ class Markup(str):
   __slots__ = ()
 
 
-def tag(name: str, /, *content: Content, **attributes: object) -> Markup:
+def tag(name: str, /, *content: Content, **attributes: Content) -> Markup:
   """An element.
 
   Args:

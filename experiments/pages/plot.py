@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 import dataclasses
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple, overload
 
 import numpy as np
 
@@ -31,7 +31,13 @@ class Scale:
   end: float
   logarithmic: bool = False
 
-  def __call__(self, values: np.ndarray | float) -> np.ndarray | float:
+  @overload
+  def __call__(self, values: float) -> float: ...
+
+  @overload
+  def __call__(self, values: np.ndarray) -> np.ndarray: ...
+
+  def __call__(self, values: Any) -> Any:
     """Coordinates of values, which are clipped to the scale."""
     values = np.clip(values, self.low, self.high)
     low, high = self.low, self.high
@@ -76,13 +82,15 @@ class Limits(NamedTuple):
 
 
 def text(
-  x: float, y: float, *content: markup.Content, **attributes: object
+  x: float, y: float, *content: markup.Content, **attributes: markup.Content
 ) -> markup.Markup:
   """An SVG text."""
   return markup.tag('text', *content, x=float(x), y=float(y), **attributes)
 
 
-def path(x: np.ndarray, y: np.ndarray, **attributes: object) -> markup.Markup:
+def path(
+  x: np.ndarray, y: np.ndarray, **attributes: markup.Content
+) -> markup.Markup:
   """A polyline through (K,) points, rounded and without those that repeat."""
   points = np.column_stack([x, y]).round(1)  # (K, 2)
   moved = (np.diff(points, axis=0) != 0).any(axis=1)
@@ -91,7 +99,9 @@ def path(x: np.ndarray, y: np.ndarray, **attributes: object) -> markup.Markup:
   return markup.tag('polyline', points=line, **attributes)
 
 
-def curve(x: np.ndarray, y: np.ndarray, **attributes: object) -> markup.Markup:
+def curve(
+  x: np.ndarray, y: np.ndarray, **attributes: markup.Content
+) -> markup.Markup:
   """A polyline over time, (K,) points, without those inside level stretches."""
   level = np.diff(np.round(y, 1)) == 0
   inside = np.concatenate([[False], level[1:] & level[:-1], [False]])
@@ -181,8 +191,8 @@ def panel(
     out.append(text(WIDTH - RIGHT, scale.end - 5, name, class_='tick end'))
   for number, line in enumerate(lines):
     for part in pieces(np.isfinite(line.values)):
-      x, y = across(times_s[part]), scale(line.values[part])
-      out.append(curve(x, y, class_=f'line {line.look}'))
+      along, up = across(times_s[part]), scale(line.values[part])
+      out.append(curve(along, up, class_=f'line {line.look}'))
     if line.name:
       x = LEFT + 8 + 90 * number
       key = markup.tag(

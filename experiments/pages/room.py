@@ -23,9 +23,9 @@ Moment = list[float]  # Time in s, then x, y and z in m.
 
 def ways(run: archive.Run) -> dict[str, list[Moment]]:
   """Where each vehicle was, to the millimetre, whenever that changed."""
-  out = {}
+  out: dict[str, list[Moment]] = {}
   for name, way_m in run.positions_m.items():
-    moments = []
+    moments: list[Moment] = []
     for frame in range(0, len(way_m), _EVERY):
       place = [round(float(each), 3) for each in way_m[frame]]
       if not moments or moments[-1][1:] != place:
@@ -120,7 +120,7 @@ def _scales(
 
 
 def _at(
-  x: float, y: float, *marks: markup.Content, **attributes: object
+  x: float, y: float, *marks: markup.Content, **attributes: markup.Content
 ) -> markup.Markup:
   """Marks around a place, which keep their size however near one looks."""
   inner = markup.tag('g', *marks, class_='mark')

@@ -6,6 +6,7 @@ A static file beside the data that it shows; `write` makes it again from them.
 from collections.abc import Mapping, Sequence
 import math
 import pathlib
+from typing import Any
 
 from waggle_tasks.agents import config as config_lib
 from waggle_tasks.agents import receivers
@@ -79,7 +80,7 @@ def _title(run: archive.Run) -> str:
   return f'{run.scenario["payload"]}, {verdict} \u2013 waggle broadcast'
 
 
-def _facts(run: archive.Run) -> dict[str, object]:
+def _facts(run: archive.Run) -> dict[str, Any]:
   """What the script says about a moment."""
   readings = {
     name: [
@@ -122,7 +123,7 @@ def _head(run: archive.Run) -> markup.Markup:
 
 def _changes(run: archive.Run) -> markup.Markup | None:
   """What is unlike the default: disturbances, looks, languages."""
-  told = _TOLD
+  told: tuple[str, ...] = _TOLD
   if run.scenario['layout'] == 'arc':
     told = (*told, 'half_span_deg')
   found = changes.among(run.scenario, told)

@@ -112,8 +112,10 @@ def _quality(tracking: _Tracking) -> tuple[str, str]:
 
 def _qualities(tracking: _Tracking, rest: config_lib.Stillness) -> plot.Limits:
   """The quality of a null and of a valid frame."""
-  flow = isinstance(tracking, config_lib.Tracking)
-  least = tracking.min_quality if flow else tracking.lost_share
+  if isinstance(tracking, config_lib.Tracking):
+    least = tracking.min_quality
+  else:
+    least = tracking.lost_share
   return plot.Limits(
     [rest.null_quality, least],
     f'a null needs {rest.null_quality:g}, the track {least:g}',

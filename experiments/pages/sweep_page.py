@@ -137,7 +137,7 @@ def repeat(row: envelope.Row) -> str:
 
 def _table(panel: envelope.Panel) -> markup.Markup:
   """Every cell of a map with its limits."""
-  lines = []
+  lines: list[list[markup.Content]] = []
   for (down, across), rows in panel.cells.items():
     got = envelope.count(rows)
     low, high = statistics.clopper_pearson(got.right, got.exposures)

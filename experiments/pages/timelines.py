@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 from waggle_tasks.agents import observer_agent, receiver
-from waggle_tasks.experiments import archive, palette, story
+from waggle_tasks.experiments import archive, episode, palette, story
 from waggle_tasks.experiments.pages import markup, plot
 from waggle_tasks.protocol.symbols import Symbol
 from waggle_tasks.tasks import safety
@@ -120,7 +120,7 @@ def _motions(
   return out
 
 
-def motions(events: Sequence[object]) -> list[receiver.Event]:
+def motions(events: Sequence[episode.Event]) -> list[receiver.Event]:
   """The motions among an observer's events."""
   return [
     event
@@ -129,7 +129,9 @@ def motions(events: Sequence[object]) -> list[receiver.Event]:
   ]
 
 
-def _nulls(events: Sequence[object], across: plot.Scale) -> list[markup.Markup]:
+def _nulls(
+  events: Sequence[episode.Event], across: plot.Scale
+) -> list[markup.Markup]:
   """A diamond where each null was confirmed."""
   out = []
   for event in events:
@@ -147,7 +149,7 @@ def _nulls(events: Sequence[object], across: plot.Scale) -> list[markup.Markup]:
 
 
 def _states(
-  events: Sequence[object], end_s: float, across: plot.Scale
+  events: Sequence[episode.Event], end_s: float, across: plot.Scale
 ) -> list[markup.Markup]:
   """What the frame parser waited for, from event to event."""
   changes = [(0.0, story.Reading())]
@@ -177,10 +179,11 @@ _WAITING = {
 
 
 def _deeds(
-  events: Sequence[object], end_s: float, across: plot.Scale
+  events: Sequence[episode.Event], end_s: float, across: plot.Scale
 ) -> list[markup.Markup]:
   """The flight, the hold after it, or the refusal."""
-  out, started_s = [], None
+  out: list[markup.Markup] = []
+  started_s: float | None = None
   for event in events:
     time_s = event.time_s
     if isinstance(event, safety.Refusal):
@@ -195,7 +198,7 @@ def _deeds(
       continue
     elif event.deed is observer_agent.Deed.START:
       started_s = time_s
-    else:
+    elif started_s is not None:
       hint = f'flew {started_s:.2f} to {time_s:.2f} s, then held'
       fly = block(
         across(started_s), across(time_s), 'fly', palette.YELLOW, hint

@@ -43,8 +43,8 @@ class Film:
       )
     self._path, self._name = path, work.name
     self._watch = moment.Watch(work.name, work)
-    self._page: page.Single | None = None
-    self._encoder: encoders.Encoder | None = None
+    # How a picture is drawn, and who takes it; once the first one is here.
+    self._made: tuple[page.Single, encoders.Encoder] | None = None
     self._begin_s = 0.0
     self._pictures = 0
     self.problem = ''
@@ -58,9 +58,9 @@ class Film:
     error: BaseException | None,
     trace: types.TracebackType | None,
   ) -> None:
-    if error is None and self._encoder is not None:
+    if error is None and self._made is not None:
       try:
-        self._encoder.close()
+        self._made[1].close()
       except _ERRORS as problem:
         self._give_up(problem)
     elif error is not None:
@@ -77,30 +77,33 @@ class Film:
       self._give_up(problem)
 
   def _write(self, image: np.ndarray, time_s: float) -> None:
-    if self._encoder is None:
-      self._begin(image, time_s)
+    if self._made is None:
+      self._made = self._begin(image, time_s)
+    drawing, encoder = self._made
     shown = None
     # A constant rate from pictures at any times: the latest one is repeated.
     while self._begin_s + self._pictures / _FPS <= time_s + 1e-6:
       if shown is None:
         sight = self._watch.sight(image)
         now = moment.Moment(time_s, Symbol.NULL, (sight,), {}, {})
-        shown = self._page.draw(now)
-      self._encoder.write(shown)
+        shown = drawing.draw(now)
+      encoder.write(shown)
       self._pictures += 1
 
-  def _begin(self, image: np.ndarray, time_s: float) -> None:
+  def _begin(
+    self, image: np.ndarray, time_s: float
+  ) -> tuple[page.Single, encoders.Encoder]:
     height, width, _ = image.shape
     zoom = min(_MOST_PX / width, max(_LEAST_PX / width, 1.0))
     size = round(zoom * width), round(zoom * height)
-    self._page = page.Single(self._name, size=size)
-    self._encoder = encoders.make(self._path, self._page.size, _FPS)
+    drawing = page.Single(self._name, size=size)
     self._begin_s = time_s
+    return drawing, encoders.make(self._path, drawing.size, _FPS)
 
   def _give_up(self, problem: Exception) -> None:
     self.problem = f'{self._path} could not be written: {problem}'
     self._drop()
 
   def _drop(self) -> None:
-    self._encoder = None  # Lets go of the file.
+    self._made = None  # Lets go of the file.
     self._path.unlink(missing_ok=True)

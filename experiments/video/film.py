@@ -1,5 +1,6 @@
 """Films an episode while it runs: a watcher that leaves video files."""
 
+import functools
 import pathlib
 import types
 
@@ -12,10 +13,8 @@ from waggle_tasks.experiments import changes, story
 from waggle_tasks.experiments.video import encoders, layout, lens, page
 from waggle_tasks.protocol import checks, timing
 
-COMPOSITE = 'composite'
 # Of a scenario, what its title or the pictures themselves say.
 _TOLD = ('control', 'payload', 'layout', 'distance_m', 'observers')
-FPS = 5.0  # Every fifth frame: cheap beside the run.
 
 
 class Film:
@@ -32,8 +31,8 @@ class Film:
     scene: scenario.Scenario,
     *,
     name: str | None = None,
-    view: str = COMPOSITE,
-    fps: float = FPS,
+    view: str = layout.COMPOSITE,
+    fps: float = layout.FPS,
     scale: float = 1.0,
     marks: bool = True,
   ) -> None:
@@ -55,15 +54,17 @@ class Film:
     name = name or f'{view}.webm'
     encoders.check_name(name)
     names = [f'observer_{k + 1}' for k in range(scene.observers)]
-    views = [COMPOSITE, *names, *layout.SHARED]
+    views = [layout.COMPOSITE, *names, *layout.SHARED]
     checks.choice('view', view, views, layout.VideoError)
     fastest = timing.FRAME_RATE_HZ
     checks.number('video_fps', fps, 0.1, fastest, layout.VideoError)
     self._fps, self._pictures = fps, 0
-    if view == COMPOSITE:
+    if view == layout.COMPOSITE:
       self._lens = lens.Lens(scene)
       shown = layout.pages(names)
-      plans = [composite(scene, each, scale) for each in shown]
+      plans: list[page.Composite | page.Single] = [
+        composite(scene, each, scale) for each in shown
+      ]
     else:
       self._lens = lens.Lens(scene, [n for n in layout.SHARED if n == view])
       shown = [tuple(n for n in names if n == view)]
@@ -109,7 +110,7 @@ class Film:
     shared = self._lens.shared()
     for names, plan, worker in self._pages:
       now = self._lens.moment(names, shared)
-      worker.put(lambda plan=plan, now=now: plan.draw(now))
+      worker.put(functools.partial(plan.draw, now))
 
 
 def composite(

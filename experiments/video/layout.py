@@ -8,12 +8,14 @@ from waggle_tasks import errors
 from waggle_tasks.protocol import checks
 
 PER_PAGE = 5  # Observers beside the shared views; more get pages of their own.
+COMPOSITE = 'composite'  # The view of everyone.
 SHARED = {
   'performer': 'performer_view',
   'top': 'top',
   'overview': 'overview',
 }  # Name of a view -> name of its camera.
 
+FPS = 5.0  # Every fifth frame: cheap beside the run.
 VIEW_PX = (640, 480)  # Of an observer's image, and of a single view.
 
 _WIDTH = 1024
@@ -144,12 +146,14 @@ def plan(observers: int, scale: float = 1.0, notes: int = 0) -> Layout:
     VideoError: if a number is out of its range.
   """
   checks.integer('observers', observers, 1, PER_PAGE, VideoError)
-  top = _GAP + _HEADER + notes * _NOTE
+  top: float = _GAP + _HEADER + notes * _NOTE
   cell = (_WIDTH - 5 * _GAP) / 4
   high = cell * 3 / 4
   if observers == 1:
     tall = 2 * (_TITLE + high) + _GAP
-    eyes = [(_GAP, top + _TITLE, (tall - _TITLE - _FOOT) * 4 / 3)]
+    eyes: list[tuple[float, float, float]] = [
+      (_GAP, top + _TITLE, (tall - _TITLE - _FOOT) * 4 / 3)
+    ]
     left = _WIDTH - 2 * (cell + _GAP)
     cells = [
       (left + column * (cell + _GAP), top + row * (_TITLE + high + _GAP))

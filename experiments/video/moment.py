@@ -2,12 +2,13 @@
 
 from collections.abc import Sequence
 import dataclasses
+from typing import Protocol
 
 import numpy as np
 
-from waggle_tasks.agents import klt, observer_agent
-from waggle_tasks.experiments import rollout as rollout_lib
-from waggle_tasks.experiments import story
+from waggle_tasks.agents import klt
+from waggle_tasks.agents import receiver as receiver_lib
+from waggle_tasks.experiments import episode, story
 from waggle_tasks.protocol.symbols import Symbol
 from waggle_tasks.tasks import safety
 
@@ -30,7 +31,7 @@ class Sight:
   track: klt.Track | None
   trail_px: np.ndarray
   reading: story.Reading
-  events: tuple[rollout_lib.Event, ...]
+  events: tuple[episode.Event, ...]
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -52,13 +53,27 @@ class Moment:
   places: dict[str, dict[str, tuple[float, float]]]
 
 
+class Watched(Protocol):
+  """Who reads images: an agent, or a reader of a recording."""
+
+  @property
+  def receiver(self) -> receiver_lib.Receiver:
+    """What reads them."""
+    ...
+
+  @property
+  def events(self) -> Sequence[episode.Event]:
+    """What it saw and did."""
+    ...
+
+
 class Watch:
   """Follows one agent, frame by frame, to tell its sight at any moment."""
 
-  def __init__(self, name: str, agent: observer_agent.ObserverAgent) -> None:
+  def __init__(self, name: str, agent: Watched) -> None:
     """Follows an agent from the beginning of its episode."""
     self._name, self._agent = name, agent
-    self._events: list[rollout_lib.Event] = []
+    self._events: list[episode.Event] = []
     self._reading = story.Reading()
     self._trail_px: list[np.ndarray] = []
 

@@ -6,8 +6,7 @@ import math
 import numpy as np
 
 from waggle_tasks.agents import observer_agent, receiver
-from waggle_tasks.experiments import palette, story
-from waggle_tasks.experiments import rollout as rollout_lib
+from waggle_tasks.experiments import episode, palette, story
 from waggle_tasks.experiments.video import layout, moment, pen, tiles
 from waggle_tasks.protocol.symbols import Symbol
 
@@ -42,7 +41,8 @@ def header(
 
 def notes(changed: Sequence[str]) -> list[str]:
   """What is unlike the default scenario, in lines that fit a page."""
-  room, lines = layout.plan(1).notes.width, []
+  room = layout.plan(1).notes.width
+  lines: list[str] = []
   for each in changed:
     longer = f'{lines[-1]}, {each}' if lines else each
     if lines and pen.width_px(longer, _SIZE) <= 0.95 * room:
@@ -89,7 +89,7 @@ def card(
 def _entry(
   canvas: np.ndarray,
   plan: layout.Layout,
-  event: rollout_lib.Event,
+  event: episode.Event,
   name: str,
   middle: int,
 ) -> None:
@@ -106,7 +106,7 @@ def _entry(
   pen.text(canvas, words, left, middle, size)
 
 
-def _words(event: rollout_lib.Event) -> str:
+def _words(event: episode.Event) -> str:
   if isinstance(event, observer_agent.Navigation):
     return f'{event.deed} {event.payload.bits}'
   if not isinstance(event, receiver.Event):
@@ -210,7 +210,7 @@ class Strip:
     bottom = plan.px(6) + (len(self._drawn) + 1) * plan.row
     part[plan.px(2) : bottom, column : column + plan.px(2)] = 255
 
-  def _mark(self, event: rollout_lib.Event, middle: int, free: int) -> int:
+  def _mark(self, event: episode.Event, middle: int, free: int) -> int:
     """Draws an event: nulls are small and hollow, the rest are named.
 
     A mark ends at its time. One that would cover the mark before it moves to
@@ -243,7 +243,9 @@ class Strip:
       label = '?' if event.symbol is Symbol.UNKNOWN else str(event.symbol)
       colour = palette.SYMBOLS[event.symbol]
     else:
-      label, colour = _DEEDS.get(getattr(event, 'deed', None), '!'), _DEED
+      label, colour = '!', _DEED
+      if isinstance(event, observer_agent.Navigation):
+        label = _DEEDS.get(event.deed, '!')
     width = pen.chip_width(label, size)
     left = max(column - width, free)
     if left <= column and left + width <= self._plan.strip.width:

@@ -18,6 +18,7 @@ from waggle_tasks.experiments import (
   evaluator,
   provenance,
   records,
+  verdicts,
 )
 from waggle_tasks.experiments import rollout as rollout_lib
 from waggle_tasks.experiments.video import film
@@ -32,7 +33,7 @@ class Recorded:
   folder: pathlib.Path
   scene: scenario.Scenario
   rollout: rollout_lib.Rollout
-  verdict: evaluator.Verdict
+  verdict: verdicts.Verdict
 
 
 @pytest.fixture(scope='session')

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 import pathlib
+import types
 
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -9,6 +10,7 @@ import numpy as np
 import pytest
 
 from waggle_tasks import scenario, sensor
+from waggle_tasks.agents import navigator, observer_agent
 from waggle_tasks.experiments import capture, rollout
 
 SHAPE = (480, 640, 3)
@@ -164,3 +166,37 @@ def test_a_run_without_captures_says_how_to_make_them(
 ) -> None:
   with pytest.raises(capture.CaptureError, match='`waggle broadcast --raw`'):
     capture.paths(tmp_path)
+
+
+class Trackless:
+  """A receiver that says nothing of where it looks."""
+
+  track = None
+  segment = None
+
+  def step(self, image: np.ndarray, time_s: float) -> list[object]:
+    del image, time_s
+    return []
+
+
+def test_what_a_receiver_without_a_track_takes_is_captured(
+  tmp_path: pathlib.Path,
+) -> None:
+  agent = observer_agent.ObserverAgent(Trackless(), navigator.Navigator())
+  team = types.SimpleNamespace(agents=[agent])
+  body = types.SimpleNamespace(mjcf_model=types.SimpleNamespace(model='a_1'))
+  room = types.SimpleNamespace(task=types.SimpleNamespace(observers=[body]))
+  with capture.Recorder(tmp_path) as recorder:
+    for frame in range(3):
+      seen = {
+        'camera': np.full(SHAPE, frame, np.uint8),
+        'time_s': np.array(frame * 0.04),
+        'position_m': np.zeros(3),
+      }
+      agent.step(seen)
+      timestep = types.SimpleNamespace(
+        first=lambda frame=frame: frame == 0, observation=[seen]
+      )
+      recorder(room, timestep, team)
+  (path,) = capture.paths(tmp_path)
+  assert [image[0, 0, 0] for image, _ in capture.read(path)] == [0, 1, 2]

@@ -207,13 +207,14 @@ def test_times_come_from_the_container_not_from_a_rate(
   assert decoded(path)[0] == WANTED
 
 
-def test_an_annotated_copy_shows_what_was_read(
+def test_an_annotated_copy_shows_what_was_read_without_gl(
   waggle: Waggle,
   dance: Callable[..., pathlib.Path],
   tmp_path: pathlib.Path,
+  no_gl: dict[str, str],
 ) -> None:
   path, source = tmp_path / 'seen.webm', dance()
-  child = waggle('decode', str(source), f'--annotate={path}')
+  child = waggle('decode', str(source), f'--annotate={path}', **no_gl)
   assert child.returncode == 1, child.stderr  # No whole message in it.
   assert 'klt: no message' in child.stdout
   with recordings.Recording(path) as recording:

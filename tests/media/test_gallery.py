@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from waggle_tasks import scenario
-from waggle_tasks.experiments import gallery, palette, png, story, traces
+from waggle_tasks.experiments import palette, png, shots, story, traces
 
 Waggle = Callable[..., subprocess.CompletedProcess[str]]
 
@@ -49,11 +49,11 @@ def test_a_picture_that_cannot_be_written_is_an_error(
 
 
 def test_each_gesture_shows_the_performer_all_along_its_track() -> None:
-  sent = gallery.firsts(story.sent_in(scenario.Scenario()))
+  sent = shots.firsts(story.sent_in(scenario.Scenario()))
   assert [str(each.symbol) for each in sent] == ['START', '0', '1', 'END']
   images, times_s, centres_px = {}, [], []
   for gesture in sent:
-    for number, frame in enumerate(gallery.exposures(gesture)):
+    for number, frame in enumerate(shots.exposures(gesture)):
       image = np.full((480, 640, 3), 100, np.uint8)
       place = 200 + 12 * number, 200
       cv2.circle(image, place, 3, (255, 0, 0), -1)
@@ -64,7 +64,7 @@ def test_each_gesture_shows_the_performer_all_along_its_track() -> None:
   trace = traces.Trace(
     np.array(times_s), np.array(centres_px, float), rest, rest, rest, rest > -1
   )
-  picture = gallery.gestures(sent, images, trace)
+  picture = shots.gestures(sent, images, trace)
   red = (picture == (255, 0, 0)).all(axis=2).astype(np.uint8)
   count, _ = cv2.connectedComponents(red)
   assert count - 1 == len(images)
@@ -83,17 +83,17 @@ def test_the_command_makes_pictures_small_enough_to_commit(
   assert max(sizes.values()) < 300_000
 
 
-def test_the_envelope_of_a_sweep_is_drawn(
-  waggle: Waggle, tmp_path: pathlib.Path
+def test_the_envelope_of_a_sweep_is_drawn_without_gl(
+  waggle: Waggle, tmp_path: pathlib.Path, no_gl: dict[str, str]
 ) -> None:
   pytest.importorskip('matplotlib')
   grids = '--grid=distance_m=1.0,1.3', '--grid=bearing_deg=0,20'
   short = '--control=no_send', '--duration_s=0.08', '--observers=1'
-  for command in (
-    ['sweep', *grids, *short, '--workers=1', '--output=flown'],
-    ['gallery', '--sweep=flown', '--output=pictures'],
+  for command, changes in (
+    (['sweep', *grids, *short, '--workers=1', '--output=flown'], {}),
+    (['gallery', '--sweep=flown', '--output=pictures'], no_gl),
   ):
-    done = waggle(*command, cwd=tmp_path)
+    done = waggle(*command, cwd=tmp_path, **changes)
     assert done.returncode == 0, done.stderr
   picture = read(tmp_path / 'pictures' / 'envelope.png')
   assert min(picture.shape[:2]) > 200

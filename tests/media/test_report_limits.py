@@ -17,6 +17,7 @@ from waggle_tasks.experiments import (
   records,
   story,
   traces,
+  verdicts,
 )
 from waggle_tasks.experiments import rollout as rollout_lib
 from waggle_tasks.experiments.pages import document, gesture_plots, signals
@@ -34,7 +35,7 @@ class Run:
 
   folder: pathlib.Path
   rollout: rollout_lib.Rollout
-  verdict: evaluator.Verdict
+  verdict: verdicts.Verdict
   words: str
 
 

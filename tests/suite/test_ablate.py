@@ -10,7 +10,7 @@ import subprocess
 import pytest
 
 from waggle_tasks.agents import receivers
-from waggle_tasks.experiments import ablations, evaluator
+from waggle_tasks.experiments import ablations, verdicts
 
 Waggle = Callable[..., subprocess.CompletedProcess[str]]
 Row = dict[str, object]
@@ -39,7 +39,7 @@ def outcome(
   start_s: float | None = None,
   failures: tuple[str, ...] = (),
 ) -> Row:
-  made = evaluator.Outcome(
+  made = verdicts.Outcome(
     'observer_0', expected, decoded, start_s=start_s, failures=failures
   )
   return dataclasses.asdict(made)

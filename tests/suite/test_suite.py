@@ -77,11 +77,23 @@ def test_a_suite_of_ones_own_is_a_json_file(
   ] * 2
 
 
-def test_two_finished_folders_are_set_side_by_side(
-  suite: Waggle, reference: object
+def test_workers_that_cannot_render_say_so_in_one_line(
+  suite: Waggle, tmp_path: pathlib.Path
+) -> None:
+  rows = [{'name': 'still', 'task': 'no_send', 'duration_s': 0.04}]
+  (tmp_path / 'own.json').write_text(json.dumps(rows))
+  done = suite('--suite=own.json', '--workers=1', MUJOCO_GL='disabled')
+  assert done.returncode == 2
+  said = done.stderr.splitlines()[-1]
+  assert said.startswith('waggle suite: still failed 2 times, at last: cannot')
+  assert said.endswith('mend it: export MUJOCO_GL=egl')
+
+
+def test_two_finished_folders_are_set_side_by_side_without_gl(
+  suite: Waggle, reference: object, no_gl: dict[str, str]
 ) -> None:
   folder = str(reference.folder)
-  done = suite(f'--compare={folder}', folder)
+  done = suite(f'--compare={folder}', folder, **no_gl)
   assert done.returncode == 0, done.stderr
   assert re.search(r'(?m) 1 +0/1 +0/1 +Fail +Fail$', done.stdout)
   assert (

@@ -9,8 +9,8 @@ import pytest
 
 from waggle_tasks import suites
 from waggle_tasks.experiments import (
+  identity,
   provenance,
-  records,
   suite_case,
 )
 
@@ -114,7 +114,7 @@ def test_an_identity_follows_all_that_decides_a_result(
     changes: dict[str, object], receiver: str = 'klt', digest: str = 'a'
   ) -> str:
     (case,) = suites.from_rows([{'name': 'a', **changes}])
-    return records.identity(case.scene, receiver, digest)
+    return identity.of(case.scene, receiver, digest)
 
   first = identify({})
   assert identify({'name': 'b', 'label': 'x', 'group': 'g'}) == first

@@ -15,7 +15,9 @@ from waggle_tasks.experiments import (
   scenario_fields,
   sweep_cases,
   sweep_flight,
+  sweep_results,
   sweep_runner,
+  verdicts,
 )
 from waggle_tasks.experiments import rollout as rollout_lib
 
@@ -46,11 +48,11 @@ def _row(case: sweep_cases.Case, fate: Fate, identity: str) -> Row:
     expected = evaluator.expected_bits(case.scene, number)
     usual = {'decoded': expected, 'start_s': expected and 95.6}
     fields = usual | fate(case, number)
-    outcomes.append(evaluator.Outcome(name, expected, **fields))
+    outcomes.append(verdicts.Outcome(name, expected, **fields))
   rollout = rollout_lib.Rollout(
     np.array([0.0, 101.0]), {}, (), dict.fromkeys(names, ()), 'none'
   )
-  verdict = evaluator.Verdict(tuple(outcomes))
+  verdict = verdicts.Verdict(tuple(outcomes))
   return sweep_flight.row(case, 'view_bank', identity, rollout, verdict)
 
 
@@ -113,7 +115,7 @@ class Sweep:
   @property
   def journal(self) -> pathlib.Path:
     """Its journal."""
-    return self.folder / sweep_runner.JOURNAL
+    return self.folder / sweep_results.JOURNAL
 
 
 @pytest.fixture

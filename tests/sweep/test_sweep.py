@@ -52,10 +52,12 @@ def test_a_grid_is_flown_and_mapped(
   assert (folder / 'index.html').exists()
 
 
-def test_a_summary_flies_nothing(here: Waggle, told: object) -> None:
+def test_a_summary_flies_nothing_and_needs_no_gl(
+  here: Waggle, told: object, no_gl: dict[str, str]
+) -> None:
   folder = shutil.copytree(told.folder, waggle_folder(told))
   before = {p.name: p.read_bytes() for p in folder.iterdir()}
-  done = here('sweep', '--summary', str(folder))
+  done = here('sweep', '--summary', str(folder), **no_gl)
   assert done.returncode == 0, done.stderr
   assert 'right: 4/4 exposures' in done.stdout
   after = {p.name: p.read_bytes() for p in folder.iterdir()}

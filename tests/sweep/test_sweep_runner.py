@@ -15,6 +15,7 @@ from waggle_tasks.experiments import (
   pool,
   provenance,
   records,
+  sweep_results,
   sweep_runner,
 )
 
@@ -53,7 +54,7 @@ def test_a_sweep_leaves_its_results_and_no_run_folders(flown: object) -> None:
   assert {path.name for path in flown.folder.iterdir()} == {
     '.lock', 'journal.jsonl', 'results.jsonl', 'results.csv', 'provenance.json',
   }  # fmt: skip
-  rows = sweep_runner.read(flown.folder)
+  rows = sweep_results.read(flown.folder)
   assert [row['case'] for row in rows] == [
     'distance_m=0.8 bearing_deg=0.0 #0', 'distance_m=0.8 bearing_deg=40.0 #0',
     'distance_m=1.3 bearing_deg=0.0 #0', 'distance_m=1.3 bearing_deg=40.0 #0',
@@ -90,7 +91,7 @@ def test_the_sweep_says_what_made_it(flown: object) -> None:
   assert origin['command'] == 'waggle sweep'
   assert origin['sources'] == provenance.source_hashes()
   assert origin['versions'] == provenance.versions()
-  assert origin['renderer'] == sweep_runner.read(flown.folder)[0]['renderer']
+  assert origin['renderer'] == sweep_results.read(flown.folder)[0]['renderer']
   assert origin['began'] <= origin['ended']
 
 
@@ -103,7 +104,7 @@ def test_a_second_run_flies_nothing_and_changes_nothing(told: object) -> None:
   before = {p.name: p.read_bytes() for p in told.folder.iterdir()}
   rows = told.run(ending(0, lambda jobs: [*jobs]))
   assert {p.name: p.read_bytes() for p in told.folder.iterdir()} == before
-  assert rows == sweep_runner.read(told.folder)
+  assert rows == sweep_results.read(told.folder)
 
 
 @pytest.mark.parametrize('after', [0, 1, 3])
@@ -218,7 +219,7 @@ def test_an_unfinished_sweep_is_read_from_its_journal(
 ) -> None:
   with pytest.raises(Ended):
     sweep.run(ending(2, engine))
-  assert len(sweep_runner.read(sweep.folder)) == 2
+  assert len(sweep_results.read(sweep.folder)) == 2
 
 
 @pytest.mark.parametrize(
@@ -237,4 +238,4 @@ def test_what_holds_no_results_is_refused(
   if text is not None:
     (tmp_path / 'results.jsonl').write_text(text)
   with pytest.raises(archive.ArchiveError, match=error):
-    sweep_runner.read(tmp_path)
+    sweep_results.read(tmp_path)

@@ -5,7 +5,8 @@ the plain Python value, and that is what a configuration keeps, so that it
 compares, prints and is written in the same way wherever it came from.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+import dataclasses
 import math
 import numbers
 
@@ -49,7 +50,7 @@ def number(
   return plain
 
 
-def _plain(value: numbers.Real) -> float:
+def _plain(value: float) -> float:
   """An int or a float; infinite where it is beyond all floats."""
   try:
     nearest = float(value)
@@ -114,9 +115,12 @@ def settle_numbers(
   Raises:
     WaggleError: see `number` and `integer`.
   """
+  if not dataclasses.is_dataclass(values):
+    raise TypeError(f'`values` must be a dataclass: got {values!r}')
+  kinds = {each.name: each.type for each in dataclasses.fields(values)}
   for field, (low, high) in limits.items():
-    whole = type(values).__dataclass_fields__[field].type is int
-    check = integer if whole else number
+    whole = kinds[field] is int
+    check: Callable[..., float] = integer if whole else number
     plain = check(field, getattr(values, field), low, high, error)
     settle(values, field, plain)
 
@@ -128,7 +132,7 @@ def settle(values: object, field: str, value: object) -> None:
 
 def choice(
   field: str,
-  value: str,
+  value: object,
   choices: Sequence[str],
   error: type[errors.WaggleError],
 ) -> None:

@@ -64,8 +64,9 @@ class Figure:
   ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """See `schedule.Path`; each is (D,)."""
     leg = min(int(elapsed_s / self.leg_s), len(self.corners_m) - 2)
+    begin_m, end_m = self.corners_m[leg : leg + 2]
     return minimum_jerk.between(
-      *self.corners_m[leg : leg + 2], elapsed_s - leg * self.leg_s, self.leg_s
+      begin_m, end_m, elapsed_s - leg * self.leg_s, self.leg_s
     )
 
 
@@ -109,7 +110,7 @@ class Circle:
 
 def _circles(rng: np.random.RandomState) -> list[schedule.Path]:
   """Circles beside, above and below the hover point, both ways round."""
-  paths = []
+  paths: list[schedule.Path] = []
   for _ in range(_FIGURES):
     radius_m = rng.uniform(0.10, 0.15)
     toward_rad = rng.uniform(0, 2 * math.pi)
@@ -122,7 +123,7 @@ def _circles(rng: np.random.RandomState) -> list[schedule.Path]:
 
 def _diagonals(rng: np.random.RandomState) -> list[schedule.Path]:
   """Straight lines out and back; some go on to the other side."""
-  paths = []
+  paths: list[schedule.Path] = []
   for _ in range(_FIGURES):
     slope_rad = rng.choice([-1, 1]) * math.radians(rng.uniform(25, 65))
     reach_m = rng.choice([-1, 1]) * rng.uniform(0.2, 0.33)
@@ -135,7 +136,7 @@ def _diagonals(rng: np.random.RandomState) -> list[schedule.Path]:
 
 def _random_walk(rng: np.random.RandomState) -> list[schedule.Path]:
   """Two to four random corners, and back to the hover point."""
-  paths = []
+  paths: list[schedule.Path] = []
   for _ in range(_FIGURES):
     corners = [
       rng.uniform(_LOW_M[:2], _HIGH_M[:2]) for _ in range(rng.randint(2, 5))
@@ -146,7 +147,8 @@ def _random_walk(rng: np.random.RandomState) -> list[schedule.Path]:
 
 def _navigation(rng: np.random.RandomState) -> list[schedule.Path]:
   """Flights as a navigator makes them, one place after another, and holds."""
-  paths, place = [], np.zeros(3)
+  paths: list[schedule.Path] = []
+  place = np.zeros(3)
   for _ in range(_FIGURES + 2):
     goal = place
     while not _SIZE_M[0] <= np.linalg.norm(goal - place) <= _SIZE_M[1]:

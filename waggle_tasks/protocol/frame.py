@@ -123,22 +123,24 @@ class Parser:
       The next parser, and a Message when the event completes a frame, a
       Rejection when it breaks one, or None.
     """
-    if self.clock is not None:
-      return self._timed(symbol, moment)
-    return self._ordered(symbol)
+    if self.clock is None:
+      return self._ordered(symbol)
+    if moment is None:
+      raise TypeError('`moment` must be given to a parser with a clock')
+    return self._timed(self.clock, symbol, moment)
 
   def _timed(
-    self, symbol: Symbol, moment: clock_lib.Moment
+    self, clock: clock_lib.Clock, symbol: Symbol, moment: clock_lib.Moment
   ) -> tuple['Parser', Message | Rejection | None]:
     """Takes an event by its order, if it also came in its time."""
     after, outcome = self._ordered(symbol)
     if isinstance(outcome, Rejection):
-      if self.moments and (unseen := self.clock.unseen(moment)):
+      if self.moments and (unseen := clock.unseen(moment)):
         outcome = Rejection(f'{outcome.reason}; {unseen}')
-      if symbol is Symbol.START and self.clock.motion(symbol, moment):
+      if symbol is Symbol.START and clock.motion(symbol, moment):
         after = self._at(State.LEAD_NULL)  # It was none, so begins no frame.
       return after._since(symbol, moment), outcome
-    if reason := self._untimely(symbol, moment):
+    if reason := self._untimely(clock, symbol, moment):
       null = symbol is Symbol.NULL
       broken = self._at(State.START if null else State.LEAD_NULL)
       broken = dataclasses.replace(broken, moments=())
@@ -158,18 +160,20 @@ class Parser:
     moments = before if null else (*before, moment)
     return dataclasses.replace(self, moments=moments)
 
-  def _untimely(self, symbol: Symbol, moment: clock_lib.Moment) -> str:
+  def _untimely(
+    self, clock: clock_lib.Clock, symbol: Symbol, moment: clock_lib.Moment
+  ) -> str:
     """Why an event that is in its order is out of its time, or empty."""
     null = symbol is Symbol.NULL
     if not self.moments:  # Nothing before START belongs to the frame.
-      return '' if null else self.clock.motion(symbol, moment)
-    if reason := self.clock.unseen(moment):
+      return '' if null else clock.motion(symbol, moment)
+    if reason := clock.unseen(moment):
       return reason
     if not null:
       before = (Symbol.START, *map(Symbol, self.bits))
-      return self.clock.motion(symbol, moment, before, self.moments)
+      return clock.motion(symbol, moment, before, self.moments)
     if self.state is State.FINAL_NULL:
-      return self.clock.final_null(self.moments[-1], moment)
+      return clock.final_null(self.moments[-1], moment)
     return ''
 
   def _ordered(

@@ -134,9 +134,9 @@ class Gesture:
     """
     leg = int(elapsed_s / self.leg_s)
     leg = min(leg, len(self) - 2)  # Rounding at the very end.
-    corners = np.array(self.corners_m[leg : leg + 2])
+    begin_m, end_m = np.array(self.corners_m[leg : leg + 2])
     return minimum_jerk.between(
-      *corners, elapsed_s - leg * self.leg_s, self.leg_s
+      begin_m, end_m, elapsed_s - leg * self.leg_s, self.leg_s
     )
 
   def image_path(self) -> np.ndarray:

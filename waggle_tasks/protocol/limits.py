@@ -5,7 +5,6 @@ then see is another gesture. So a dance that asks for more is refused before it
 is flown.
 """
 
-from collections.abc import Callable
 import functools
 import math
 
@@ -67,8 +66,10 @@ def check_schedule(schedule: schedule_lib.Schedule) -> None:
 
 
 def _check_path(name: str, path: schedule_lib.Path) -> None:
-  find = _known_peaks if isinstance(path, gestures.Gesture) else _peaks
-  speed, sideways, up, down, haste = find(path)
+  if isinstance(path, gestures.Gesture):  # It can be looked up.
+    speed, sideways, up, down, haste = _known_peaks(path)
+  else:
+    speed, sideways, up, down, haste = _peaks(path)
   if not haste <= _REST_MPS:
     raise LimitError(
       f'`{name}` must begin and end at rest: got {haste:.2f} m/s there'
@@ -118,9 +119,7 @@ def _peaks(path: schedule_lib.Path) -> tuple[float, ...]:
   )
 
 
-_known_peaks: Callable[[gestures.Gesture], tuple[float, ...]] = (
-  functools.lru_cache(_peaks)
-)
+_known_peaks = functools.lru_cache(_peaks)
 
 
 def _whole(vector: np.ndarray) -> np.ndarray:

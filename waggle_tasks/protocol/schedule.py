@@ -21,9 +21,20 @@ class Path(Protocol):
       (3,) as in `motion`.
   """
 
-  symbol: Symbol
-  duration_s: float
-  end_m: np.ndarray
+  @property
+  def symbol(self) -> Symbol:
+    """See above."""
+    ...
+
+  @property
+  def duration_s(self) -> float:
+    """See above."""
+    ...
+
+  @property
+  def end_m(self) -> np.ndarray:
+    """See above."""
+    ...
 
   def motion(
     self, elapsed_s: float
@@ -129,7 +140,7 @@ def broadcast(
 
 def lay_out(paths: Iterable[Path], pauses: timing.Timing) -> Schedule:
   """Lays paths out in time, one after another, with the agreed pauses."""
-  slots = []
+  slots: list[Slot] = []
   begin_s = pauses.initial_hover_s
   for path in paths:
     slots.append(Slot(path, begin_s))

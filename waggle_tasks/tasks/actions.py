@@ -7,7 +7,7 @@ from dm_env import specs
 import numpy as np
 
 from waggle_tasks import errors
-from waggle_tasks.arenas import flight_room
+from waggle_tasks.arenas import bounds
 from waggle_tasks.protocol import limits, reference
 
 
@@ -54,9 +54,9 @@ def specification(names: Sequence[str]) -> list[specs.BoundedArray]:
 
 def _bounds() -> tuple[np.ndarray, np.ndarray]:
   """Lowest and highest reference, (13,) each: inside the room."""
-  room = flight_room
-  low_m = np.array([-room.HALF_WIDTH_M, -room.HALF_DEPTH_M, 0.0])
-  high_m = np.array([room.HALF_WIDTH_M, room.HALF_DEPTH_M, room.HEIGHT_M])
+  width_m, depth_m = bounds.HALF_WIDTH_M, bounds.HALF_DEPTH_M
+  low_m = np.array([-width_m, -depth_m, 0.0])
+  high_m = np.array([width_m, depth_m, bounds.HEIGHT_M])
   speed = np.full(3, limits.MAX_SPEED_MPS)
   acceleration = np.full(3, limits.MAX_SIDEWAYS_MPS2)
   return (

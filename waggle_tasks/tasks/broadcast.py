@@ -245,8 +245,12 @@ class Broadcast(copies.Uncopied, composer.Task):
   ) -> None:
     """Commands a vehicle to where it drifts from where it should be."""
     drift = self._wanders[name].at((self._clock.frame + 0.5) * timing.FRAME_S)
-    moved = [each + off[:3] for each, off in zip(motion, drift, strict=True)]
-    self._controllers[name].command(physics, *moved, turn_rad + drift[0][3])
+    place_m, velocity_mps, acceleration_mps2 = (
+      each + off[:3] for each, off in zip(motion, drift, strict=True)
+    )
+    self._controllers[name].command(
+      physics, place_m, velocity_mps, acceleration_mps2, turn_rad + drift[0][3]
+    )
 
   def after_step(
     self, physics: mjcf.Physics, random_state: np.random.RandomState

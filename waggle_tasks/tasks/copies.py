@@ -1,5 +1,7 @@
 """What runs a simulation says that it cannot be copied."""
 
+from typing import SupportsIndex
+
 from waggle_tasks import errors
 
 
@@ -10,7 +12,7 @@ class CopyError(errors.WaggleError):
 class Uncopied:
   """A base of what is made anew rather than copied or pickled."""
 
-  def __reduce_ex__(self, protocol: int) -> tuple:
+  def __reduce_ex__(self, protocol: SupportsIndex) -> tuple:
     """Refuses to be copied or pickled.
 
     Raises:

@@ -93,14 +93,18 @@ class Flights:
       if safety.is_due(plan, time_s)
     }
     plans = {gate.name: gate.plan for gate in self._gates if gate.plan}
-    others = {**positions_m, **plans, **self._requests}
+    others: dict[str, flight.Flight | np.ndarray] = {
+      **positions_m,
+      **plans,
+      **self._requests,
+    }
     reasons = safety.refuse(due, others, positions_m, self._minimum_spacing_m)
-    for gate, each in zip(self._gates, self._progress, strict=True):
+    for gate, way in zip(self._gates, self._progress, strict=True):
       if gate.name in due:
         gate.judge(self._requests.pop(gate.name), reasons.get(gate.name))
         # A displacement counts from where it was read, drift and all; its
         # height is the agreed one.
-        each.shift(drifts_m[gate.name] * (1.0, 1.0, 0.0))
+        way.shift(drifts_m[gate.name] * (1.0, 1.0, 0.0))
 
   def update(
     self,

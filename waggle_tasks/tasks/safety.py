@@ -96,7 +96,7 @@ def refuse(
   Returns:
     The reasons by name.
   """
-  others, reasons = dict(others), {}
+  others, reasons = dict(others), dict[str, str]()
   while True:
     found = {}
     for name in due.keys() - reasons.keys():
@@ -169,27 +169,27 @@ class Gate:
     """
     if self.plan is None or self.refusal:
       return self._hold
-    if reason := self._astray(wanted):
+    if reason := _astray(self.plan, wanted):
       self._refuse(time_s, reason)
     else:
       self._hold = reference.Reference.hover(wanted.position_m)
       return wanted
     return self._hold
 
-  def _astray(self, wanted: reference.Reference) -> str | None:
-    """Why a reference does not belong to the accepted plan."""
-    if np.linalg.norm(wanted.goal_m - self.plan.goal_m) > COMMAND_M:
-      return 'one command was already accepted in this episode'
-    way = self.plan.goal_m - self.plan.begin_m
-    offset = wanted.position_m - self.plan.begin_m
-    along = np.clip(offset @ way / (way @ way), 0.0, 1.0)
-    aside_m = np.linalg.norm(offset - along * way)
-    if aside_m > _CORRIDOR_M:
-      return (
-        f'the reference is {aside_m:.3f} m from its way, over'
-        f' {_CORRIDOR_M:.3f} m'
-      )
-    return None
-
   def _refuse(self, time_s: float, reason: str) -> None:
     self.refusal = Refusal(time_s, self.name, reason)
+
+
+def _astray(plan: flight.Flight, wanted: reference.Reference) -> str | None:
+  """Why a reference does not belong to an accepted plan."""
+  if np.linalg.norm(wanted.goal_m - plan.goal_m) > COMMAND_M:
+    return 'one command was already accepted in this episode'
+  way = plan.goal_m - plan.begin_m
+  offset = wanted.position_m - plan.begin_m
+  along = np.clip(offset @ way / (way @ way), 0.0, 1.0)
+  aside_m = np.linalg.norm(offset - along * way)
+  if aside_m > _CORRIDOR_M:
+    return (
+      f'the reference is {aside_m:.3f} m from its way, over {_CORRIDOR_M:.3f} m'
+    )
+  return None

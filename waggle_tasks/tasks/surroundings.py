@@ -7,28 +7,25 @@ import math
 import numpy as np
 
 from waggle_tasks import errors
-from waggle_tasks.arenas import flight_room, layouts
-from waggle_tasks.entities import board, bystander
+from waggle_tasks.arenas import layouts
 from waggle_tasks.protocol import checks
 from waggle_tasks.tasks import safety
 
 MAX_BYSTANDERS = 4
-# Bystanders, as the middle of the audience sees them: right, away from the
+# Bystanders fly on circles of this radius, the middles of which may be this far
+# from their places along each axis.
+CIRCLE_M, SPREAD_M = 0.3, 0.04
+# Those places, as the middle of the audience sees them: right, away from the
 # performer, and up. Two beside and two above it, all behind it, so far apart
 # that they cannot meet wherever they are on their circles.
-_PLACES_M = (
+PLACES_M = (
   (-0.85, 1.3, 1.2), (0.85, 1.3, 1.2), (-0.8, 1.3, 2.05), (0.8, 1.3, 2.05)
 )  # fmt: skip
-_SPREAD_M = 0.04
 # No other vehicle may come further back than this.
-_BACK_M = 1.3 - _SPREAD_M - bystander.RADIUS_M - safety.MINIMUM_SPACING_M
-# The board's circle: outside of the dance and half of the way to the nearest
-# observer, where that is further.
-_RADIUS_M, _SHARE = 0.45, 0.5
+_BACK_M = 1.3 - SPREAD_M - CIRCLE_M - safety.MINIMUM_SPACING_M
+# The nearest that the board passes the performer: outside of the dance.
+BOARD_M = 0.45
 _CLEAR_M = 0.1  # From an observer's centre to the board.
-# The board follows its circle this far beyond the outermost observer, and the
-# tangent then leads behind the performer, clear of the other side's observers.
-_BEYOND_RAD = math.radians(45)
 _WIDEST_RAD = math.radians(90)
 
 
@@ -88,31 +85,10 @@ class Surroundings:
         f' {math.degrees(_WIDEST_RAD):g} degrees from their middle: got'
         f' {math.degrees(audience.half_span_rad):.1f} degrees'
       )
-    if audience.nearest_m < _RADIUS_M + _CLEAR_M:
+    if audience.nearest_m < BOARD_M + _CLEAR_M:
       raise SurroundingsError(
         '`occluder_every_s` must be 0 for observers nearer than'
-        f' {_RADIUS_M + _CLEAR_M:g} m: got {audience.nearest_m:.2f} m'
-      )
-
-  def furnish(
-    self, room: flight_room.FlightRoom, poses: Mapping[str, layouts.Pose]
-  ) -> None:
-    """Adds what there is to a room; with the defaults nothing."""
-    audience = Audience.of(poses)
-    for number in range(self.bystanders):
-      middle_m = audience.place_m(*_PLACES_M[number])
-      name = f'bystander_{number + 1}'
-      room.add_guided(bystander.Bystander(name, middle_m, _SPREAD_M))
-    if self.occluder_every_s:
-      room.add_guided(
-        board.Board(
-          max(_RADIUS_M, _SHARE * audience.nearest_m),
-          audience.bearing_rad,
-          audience.half_span_rad + _BEYOND_RAD,
-          self.occluder_width_m,
-          self.occluder_mps,
-          self.occluder_every_s,
-        )
+        f' {BOARD_M + _CLEAR_M:g} m: got {audience.nearest_m:.2f} m'
       )
 
 
