@@ -7,6 +7,7 @@ import numpy as np
 
 from waggle_tasks.agents import config as config_lib
 from waggle_tasks.agents import (
+  group,
   inputs,
   klt,
   liveness,
@@ -52,17 +53,51 @@ class Event:
 class Receiver(Protocol):
   """What every receiver can do; images and times are all that it gets.
 
+  What `Class(agreement, config)` makes is at the beginning of an episode. A
+  class that has this one as a base needs only `step`.
+
   Attributes:
-    track: Where it saw the target in the last image, for people to look at.
+    DEFAULT: Its configuration, a frozen dataclass of any kind; None without
+      one. `describe` may tell people of its limits, see `receivers.describe`.
+    track: Where it saw the target in the last image, for people to look at;
+      None where it does not say.
     segment: The motion that the last image ended, for the same; or None.
   """
 
-  track: klt.Track | None
-  segment: segmenter.Segment | None
+  DEFAULT: ClassVar[object] = None
+  track: klt.Track | None = None
+  segment: segmenter.Segment | None = None
+
+  def __init__(
+    self, agreement: agreement_lib.Agreement, config: object
+  ) -> None:
+    """Makes it.
+
+    Args:
+      agreement: What both sides know; its camera is the receiver's own.
+      config: `DEFAULT`, maybe with some of its numbers changed.
+    """
 
   def step(self, image: np.ndarray, time_s: float) -> tuple[Event, ...]:
     """Takes an image, (H, W, 3) uint8 RGB, and returns what it confirms."""
     ...
+
+
+def step(
+  reader: Receiver, image: np.ndarray, time_s: float
+) -> tuple[Event, ...]:
+  """Lets a receiver take an image.
+
+  Raises:
+    ReceiverError: if it returns something else than events.
+  """
+  events = reader.step(image, time_s)
+  if not isinstance(events, tuple) or any(type(e) is not Event for e in events):
+    raise group.ReceiverError(
+      f'`step` of {type(reader).__name__} must return a tuple of'
+      f' receiver.Event, mostly an empty one: got {events!r} at {time_s:g} s'
+    )
+  return events
 
 
 class StagedReceiver:
@@ -79,9 +114,10 @@ class StagedReceiver:
 
     Args:
       agreement: What both sides know.
-      config: The receiver's numbers; None for its own.
+      config: The receiver's numbers, for the paper's camera; None for its
+        own.
     """
-    config = config or self.DEFAULT
+    config = group.zoomed(config or self.DEFAULT, agreement.camera.zoom)
     clock = agreement.clock if config.framing.clock else None
     self._watcher = watchers.make(config)
     templates = views.templates(agreement, config.views)

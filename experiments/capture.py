@@ -215,7 +215,7 @@ class Recorder:
     ):
       time_s = float(observation['time_s'])
       # Navigating, it reads none; an image that comes again, it passes over.
-      if agent.receiver.track.time_s == time_s and writer.last_s < time_s:
+      if agent.read_s == time_s and writer.last_s < time_s:
         writer.write(observation['camera'], time_s)
 
 

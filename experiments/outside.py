@@ -34,10 +34,11 @@ def paths(
     Each file by a name that does not tell where it lies.
 
   Raises:
+    ReceiverError: if the receiver is not known.
     UnknownSourceError: if something was made in a prompt, or by `exec`.
   """
-  kind = receiver_name.partition(':')[0]
-  roots = [receivers.RECEIVERS.get(kind), registry.build, registry.environment]
+  made, config = receivers.configured(receiver_name)
+  roots = [made, config, registry.build, registry.environment]
   for scene in scenes:  # All else in one is of this project.
     roots += type(scene), scene.layout, scene.codebook.gestures
   seen, out = set(), {}

@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 from waggle_tasks import suites
-from waggle_tasks.agents import config, receivers
+from waggle_tasks.agents import config, group, receivers
 from waggle_tasks.experiments import capture, reader, recordings, records
 from waggle_tasks.experiments import rollout as rollout_lib
 from waggle_tasks.protocol import agreement, camera, gestures
@@ -481,7 +481,7 @@ def test_bad_arguments_are_one_line_and_exit_status_2(
 
 @pytest.mark.parametrize('factor', [0.25, 0.5, 1.0, 4.0])
 def test_only_pixels_grow_with_the_focal_length(factor: float) -> None:
-  paper, other = config.Config(), config.zoomed(config.Config(), factor)
+  paper, other = config.Config(), group.zoomed(config.Config(), factor)
   assert other.recognition.min_span_px == factor * 28
   assert other.motion.on_px_s == factor * 3.5
   assert other.stillness.max_px_s == factor * 2.5
