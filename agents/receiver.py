@@ -7,6 +7,7 @@ import numpy as np
 
 from waggle_tasks.agents import config as config_lib
 from waggle_tasks.agents import (
+  description,
   group,
   inputs,
   klt,
@@ -135,6 +136,22 @@ class StagedReceiver:
     self._where: tuple[float | None, float | None] = None, None
     self.track: klt.Track | None = None
     self.segment: segmenter.Segment | None = None
+
+  @classmethod
+  def describe(
+    cls,
+    agreement: agreement_lib.Agreement,
+    config: object,
+    width_px: float | None = None,
+  ) -> description.Description:
+    """The receiver's limits, see `receivers.describe`."""
+    if not isinstance(config, config_lib.Config):
+      return description.Description()  # Of one's own, around such a receiver.
+    config = group.zoomed(config, agreement.camera.zoom)
+    return dataclasses.replace(
+      description.of(config, width_px),
+      templates=lambda: views.templates(agreement, config.views),
+    )
 
   def step(self, image: np.ndarray, time_s: float) -> tuple[Event, ...]:
     """Takes one image, which is all that the receiver ever gets.

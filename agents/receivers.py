@@ -4,7 +4,13 @@ from collections.abc import Callable, Sequence
 import inspect
 
 from waggle_tasks.agents import config as config_lib
-from waggle_tasks.agents import group, outsiders, receiver, settings
+from waggle_tasks.agents import (
+  description,
+  group,
+  outsiders,
+  receiver,
+  settings,
+)
 from waggle_tasks.protocol import agreement as agreement_lib
 
 ReceiverError = group.ReceiverError
@@ -79,6 +85,37 @@ def configure(changes: str, default: object = config_lib.Config()) -> object:
     ReceiverError: if a name is not known, or a value is not of its type.
   """
   return settings.changed(default, changes)
+
+
+def describe(
+  name: str,
+  agreement: agreement_lib.Agreement = agreement_lib.Agreement(),
+  width_px: float | None = None,
+) -> description.Description:
+  """The limits of a receiver, for people.
+
+  A receiver of one's own tells them with a class method
+  `describe(agreement, config, width_px)`; one without it tells nothing.
+
+  Args:
+    name: See `make`.
+    agreement: What both sides know.
+    width_px: How wide the target is in the picture, where that is known.
+
+  Raises:
+    ReceiverError: as `configured` does.
+  """
+  made, config = configured(name)
+  tell = getattr(made, 'describe', None)
+  if tell is None:
+    return description.Description()
+  told = tell(agreement, config, width_px)
+  if not isinstance(told, description.Description):
+    raise ReceiverError(
+      f'`describe` of {_plain(name)} must return a description.Description:'
+      f' got {told!r}'
+    )
+  return told
 
 
 def _plain(name: str) -> str:

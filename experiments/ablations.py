@@ -7,6 +7,7 @@ final confirmation (section 'Limitations and next simulation experiments').
 from collections.abc import Mapping, Sequence
 import dataclasses
 
+from waggle_tasks.agents import receivers, settings
 from waggle_tasks.experiments import evaluator, table, variant_runner
 
 Row = Mapping[str, object]
@@ -26,7 +27,7 @@ class Ablation(variant_runner.Variant):
   """A receiver and what it lacks.
 
   Attributes:
-    full: Name in `ABLATIONS` of the receiver with that part; empty for one
+    full: Name of the ablation of the receiver with that part; empty for one
       that lacks nothing.
   """
 
@@ -34,7 +35,8 @@ class Ablation(variant_runner.Variant):
 
 
 def _without(receiver: str, part: str, label: str) -> Ablation:
-  return Ablation(label, receiver=f'{receiver}:{part}=off', full=receiver)
+  sign = ',' if '=' in receiver else ':'  # Others of its numbers are changed.
+  return Ablation(label, receiver=f'{receiver}{sign}{part}=off', full=receiver)
 
 
 ABLATIONS = {
@@ -54,6 +56,19 @@ ABLATIONS = {
     'klt', 'forward_backward', 'forward-backward'
   ),
 }
+
+
+def of(receiver: str) -> dict[str, Ablation]:
+  """A receiver, and the same without each of its switches.
+
+  Raises:
+    ReceiverError: if it is not known.
+  """
+  _, config = receivers.configured(receiver)
+  return {receiver: Ablation('nothing', receiver=receiver)} | {
+    f'{receiver}-{part}': _without(receiver, part, part.replace('_', ' '))
+    for part in settings.switches(config)
+  }
 
 
 @dataclasses.dataclass(frozen=True)
@@ -82,11 +97,14 @@ class _Counts:
     )
 
 
-def report(results: variant_runner.Results) -> str:
+def report(
+  results: variant_runner.Results, known: Mapping[str, Ablation] = ABLATIONS
+) -> str:
   """Puts what was run into a table, one line each.
 
   Args:
-    results: By names of `ABLATIONS`, the rows of their cases.
+    results: By names of ablations, the rows of their cases.
+    known: The ablations by name.
   """
   header = (
     'receiver', 'lacks', 'messages', 'groups', 'supplemental', 'controls',
@@ -95,7 +113,7 @@ def report(results: variant_runner.Results) -> str:
   counts = {name: _Counts.of(rows) for name, rows in results.items()}
   lines = []
   for name, rows in results.items():
-    ablation, own = ABLATIONS[name], counts[name]
+    ablation, own = known[name], counts[name]
     full = counts.get(ablation.full)
     lines.append(
       (

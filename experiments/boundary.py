@@ -20,13 +20,16 @@ import tqdm
 
 from waggle_tasks import errors, registry, scenario
 from waggle_tasks.agents import observer_agent, receiver, receivers
-from waggle_tasks.experiments import launch, scenario_flags, table
+from waggle_tasks.experiments import (
+  launch,
+  receiver_flag,
+  scenario_flags,
+  table,
+)
 from waggle_tasks.protocol import checks, timing
 
 scenario_flags.define()
-_RECEIVER = flags.DEFINE_string(
-  'receiver', 'klt', f'One of {", ".join(receivers.RECEIVERS)}.'
-)
+_RECEIVER = receiver_flag.define()
 _OTHER = flags.DEFINE_string(
   'other_payload', '110101', 'Six bits that the other world sends.'
 )

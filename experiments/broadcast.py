@@ -26,6 +26,7 @@ from waggle_tasks.experiments import (
   nulls,
   outside,
   provenance,
+  receiver_flag,
   recording_flags,
   records,
   scenario_flags,
@@ -38,11 +39,7 @@ from waggle_tasks.protocol import timing
 
 scenario_flags.define()
 recording_flags.define()
-_RECEIVER = flags.DEFINE_string(
-  'receiver',
-  'klt',
-  f'How observers read images. One of {", ".join(receivers.RECEIVERS)}.',
-)
+_RECEIVER = receiver_flag.define()
 _OUTPUT = flags.DEFINE_string(
   'output', None, 'Run folder to make; unset, the next runs/broadcast-N.'
 )

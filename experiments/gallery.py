@@ -17,13 +17,14 @@ import dm_env
 import numpy as np
 
 from waggle_tasks import scenario
-from waggle_tasks.agents import observer_agent
+from waggle_tasks.agents import observer_agent, receivers
 from waggle_tasks.experiments import (
   envelope,
   figures,
   launch,
   palette,
   png,
+  receiver_flag,
   records,
   story,
   sweep_runner,
@@ -38,6 +39,7 @@ _OUTPUT = flags.DEFINE_string(
   'output', 'docs/gallery', 'Folder of the pictures; those in it are replaced.'
 )
 
+_RECEIVER = receiver_flag.define()
 _SWEEP = flags.DEFINE_list('sweep', [], 'Draw the envelope of these folders.')
 
 _TIME_S = 78.6  # Of the composite: in the last bit, with the others read.
@@ -108,7 +110,8 @@ def main(argv: Sequence[str]) -> int:
     return 0
   scene = scenario.Scenario()
   shots = Shots(scene)
-  flown = rollout_lib.run(scene, 'klt', [shots])
+  receivers.make(_RECEIVER.value, scene.agreement)
+  flown = rollout_lib.run(scene, _RECEIVER.value, [shots])
   sent, trace = story.sent_in(scene), [*flown.traces.values()][_OBSERVER]
   pictures = {
     'composite.png': shots.composite,

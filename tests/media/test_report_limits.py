@@ -99,18 +99,18 @@ def test_a_track_by_flow_has_the_papers_with_any_templates(
 def test_changed_numbers_are_those_of_the_page(
   runs: dict[str, Run], tmp_path: pathlib.Path
 ) -> None:
-  _, config = receivers.configured(
-    'absolute:radius_px=7,off_px_s=30,min_span_widths=0.5,lost_share=0.3'
-  )
   run = runs['view_bank']
   trace = run.rollout.traces['observer_1']
-  drawn = signals.draw(trace, 60.0, config)
+  told = receivers.describe(
+    'absolute:radius_px=7,off_px_s=30,min_span_widths=0.5,lost_share=0.3',
+    width_px=signals.width_px(trace),
+  )
+  drawn = signals.draw(trace, 60.0, told)
   assert 'by 7.0 px (0.12 widths, at least 7 px)' in drawn
   assert 'under 30.0 px/s (0.15 widths/s, at least 30 px/s)' in drawn
   assert 'the track 0.3' in drawn
   events = [e for e in run.rollout.events['observer_1'] if e.time_s < 10][1:2]
-  agreed = scenario.Scenario().agreement
-  scores = gesture_plots.draw(events, trace, agreed, config)
+  scores = gesture_plots.draw(events, trace, told)
   least_px = 0.5 * trace.motions[0].width_px
   assert f'{least_px:.3g} (0.5 widths)' in scores
 
