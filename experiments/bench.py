@@ -28,8 +28,8 @@ _ONLY = flags.DEFINE_list(
 _RECEIVER = flags.DEFINE_multi_string('receiver', None, '')
 # absl adds a sentence to the help of a flag that may be given again.
 flags.FLAGS['receiver'].help = (
-  "A receiver to measure beside the paper's; may be given again. Unset, all that"
-  ' have a name.'
+  "A receiver to measure beside the paper's; may be given again. Unset, all"
+  ' that have a name.'
 )
 _SIMULATED_S = flags.DEFINE_float(
   'simulated_s', None, 'Length of each broadcast, in s; unset, what is needed.'
