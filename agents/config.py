@@ -125,6 +125,7 @@ class Excursion(group.Group):
     radius_widths: How far from rest a target is away, in apparent widths...
     radius_px: ...and at least so far...
     on_s: ...once it has been so for this long.
+    lead_s: How long before that its way begins.
     off_px_s: Image speed below which it is at rest again (paper, section 'RGB
       optical flow')...
     off_widths_s: ...or below so many apparent widths a second: whoever hovers
@@ -139,6 +140,7 @@ class Excursion(group.Group):
   radius_widths: float = 0.12
   radius_px: float = 2.0
   on_s: float = 0.08
+  lead_s: float = group.number(1.0, 0.04, 60)
   off_px_s: float = 2.5
   off_widths_s: float = 0.15
   off_s: float = 0.48
@@ -219,7 +221,10 @@ class Stillness(group.Group):
     max_widths_s: Largest speed in apparent widths of the target a second, where
       they are known and that is more; 0, as in the paper, for pixels alone.
     jump_widths: How far, in apparent widths, a picture may jump within a rest;
-      0, as in the paper, for not at all.
+      0, as in the paper, for not at all...
+    jump_s: ...and within how long it must be back at rest.
+    in_sight_s: How long the target must be seen at rest without a break before
+      a null is confirmed.
     max_stale_s: How long the images of a camera that shimmers may be stale in
       the final rest; 0, as in the paper, asks for no life.
     bridges: Whether a rest goes on after a loss of sight in which, by the
@@ -232,6 +237,8 @@ class Stillness(group.Group):
   null_quality: float = group.number(0.2, 0, 1)
   max_widths_s: float = 0.0
   jump_widths: float = 0.0
+  jump_s: float = 0.6
+  in_sight_s: float = 0.4
   max_stale_s: float = 0.0
   bridges: bool = False
 

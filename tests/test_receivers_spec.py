@@ -124,7 +124,8 @@ REFUSED = (
   'box_sigmas=-1', 'slack_px=-1', 'speed_s=0', 'gate_widths=-0.1',
   'gate_px=inf', 'lost_share=1.1', 'most_share=0.5', 'separate_s=-1',
   'relearn_s=nan', 'max_gap_s=-1', 'radius_widths=nan', 'radius_px=-2',
-  'on_s=-1', 'off_s=nan', 'stay_s=-1', 'outside_s=-inf', 'null_quality=2',
+  'on_s=-1', 'lead_s=0', 'off_s=nan', 'jump_s=-1', 'stay_s=-1', 'outside_s=-inf', 'null_quality=2',
+  'in_sight_s=nan',
 )  # fmt: skip
 
 
@@ -153,12 +154,22 @@ def test_views_within_their_limits_can_be_made(change: str) -> None:
 
 
 @pytest.mark.parametrize('name', receivers.RECEIVERS)
-@pytest.mark.parametrize('focal_px', [1.0, 30.0, 3000.0, 1e5])
+@pytest.mark.parametrize('focal_px', [1.0, 30.0, 3000.0])
 def test_no_camera_makes_a_number_that_is_refused(
   name: str, focal_px: float
 ) -> None:
   seen = camera.Camera(focal_px=focal_px)
   receivers.make(name, agreement.Agreement(camera=seen))
+
+
+def test_a_camera_that_shows_no_gesture_is_refused_by_banks_of_views() -> None:
+  seen = agreement.Agreement(camera=camera.Camera(focal_px=1e5))
+  for name in ('klt', 'absolute'):
+    receivers.make(name, seen)
+  error = r'`focal_px` must be so short that START is in the picture .* 100000'
+  for name in ('klt_bank', 'view_bank'):
+    with pytest.raises(receivers.ReceiverError, match=error):
+      receivers.make(name, seen)
 
 
 def test_a_window_is_as_small_as_it_was_asked_for() -> None:
