@@ -58,6 +58,20 @@ def paths(
   return out
 
 
+def modules(files: Mapping[str, pathlib.Path]) -> dict[str, str]:
+  """SHA-256 of modules that are found by name and are not installed.
+
+  Args:
+    files: See `paths`.
+  """
+  loose = {
+    name: path
+    for name, path in files.items()
+    if not ('/' in name or name == '__main__' or _is_installed(path))
+  }
+  return source_files.hashes(loose)
+
+
 def _reachable(value: object, seen: set[int]) -> Iterator[object]:
   """Classes, functions and modules from outside that make up a value."""
   if isinstance(value, (str, bytes, int, float)) or id(value) in seen:

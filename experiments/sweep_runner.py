@@ -81,13 +81,14 @@ def run(
     + (f' {replays} replays' if replays else '')
     for case in cases
   ]
+  modules = tuple(outside.modules(foreign).items())
   with result_folder.locked(folder, _NAMES, 'sweep'):
     known = {row['identity']: row for row in journal.read(folder / JOURNAL)}
     fly, more = sweep_flight.fly, ()
     if replays:
       fly, more = replay_flight.fly, (replays,)
     jobs = [
-      pool.Job(case.name, fly, (case, receiver_name, identity, *more))
+      pool.Job(case.name, fly, (case, receiver_name, identity, *more), modules)
       for case, identity in zip(cases, identities, strict=True)
       if identity not in known
     ]

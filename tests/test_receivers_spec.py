@@ -124,8 +124,8 @@ REFUSED = (
   'box_sigmas=-1', 'slack_px=-1', 'speed_s=0', 'gate_widths=-0.1',
   'gate_px=inf', 'lost_share=1.1', 'most_share=0.5', 'separate_s=-1',
   'relearn_s=nan', 'max_gap_s=-1', 'radius_widths=nan', 'radius_px=-2',
-  'on_s=-1', 'lead_s=0', 'off_s=nan', 'jump_s=-1', 'stay_s=-1', 'outside_s=-inf', 'null_quality=2',
-  'in_sight_s=nan',
+  'on_s=-1', 'lead_s=0', 'off_s=nan', 'jump_s=-1', 'stay_s=-1',
+  'outside_s=-inf', 'null_quality=2', 'in_sight_s=nan',
 )  # fmt: skip
 
 

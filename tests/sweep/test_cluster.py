@@ -17,7 +17,13 @@ from unittest import mock
 
 import pytest
 
-from waggle_tasks.experiments import cluster, dask_probe, pool, provenance
+from waggle_tasks.experiments import (
+  cluster,
+  dask_probe,
+  outside,
+  pool,
+  provenance,
+)
 
 
 def _ipv6() -> bool:
@@ -357,8 +363,10 @@ def test_without_the_extra_the_line_that_mends_it_is_told(
 # What a worker refuses before it flies anything.
 
 
-def _work(digest: str, versions: dict[str, str]) -> object:
-  job = pool.Job('a', lambda report, value: value, (3,))
+def _work(
+  digest: str, versions: dict[str, str], *modules: tuple[str, str]
+) -> object:
+  job = pool.Job('a', lambda report, value: value, (3,), modules)
   return cluster._work(job, (digest, versions))
 
 
@@ -384,3 +392,23 @@ def test_a_worker_of_other_versions_is_refused(digest: str) -> None:
     match=f'must have the versions of the client: mujoco is {here} on .* 9.9',
   ):
     _work(digest, versions)
+
+
+def test_a_worker_of_another_receiver_is_refused(
+  digest: str, tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+  monkeypatch.syspath_prepend(tmp_path)
+  path = tmp_path / 'kept_receiver.py'
+
+  def work() -> object:
+    files = outside.modules({'kept_receiver': path})
+    return _work(digest, provenance.versions(), *files.items())
+
+  error = 'must have the modules of the client: kept_receiver is missing on'
+  path.write_text('# first')
+  assert work() == 3
+  path.write_text('# edited, but the worker still has what it imported')
+  with pytest.raises(cluster.ClusterError, match=error):
+    work()
+  with pytest.raises(cluster.ClusterError, match='nowhere is missing on'):
+    _work(digest, provenance.versions(), ('nowhere', 'a'))
