@@ -1,5 +1,6 @@
 """Receivers: images and timestamps in, events out."""
 
+from collections.abc import Mapping
 import dataclasses
 from typing import ClassVar, Protocol
 
@@ -90,15 +91,44 @@ def step(
   """Lets a receiver take an image.
 
   Raises:
-    ReceiverError: if it returns something else than events.
+    ReceiverError: if it returns something else than events, or shows something
+      else than a track and a segment.
   """
-  events = reader.step(image, time_s)
+  events, name = reader.step(image, time_s), type(reader).__name__
   if not isinstance(events, tuple) or any(type(e) is not Event for e in events):
     raise group.ReceiverError(
-      f'`step` of {type(reader).__name__} must return a tuple of'
-      f' receiver.Event, mostly an empty one: got {events!r} at {time_s:g} s'
+      f'`step` of {name} must return a tuple of receiver.Event, mostly an empty'
+      f' one: got {events!r} at {time_s:g} s'
     )
+  _check(reader, _SHOWN, name, time_s)
+  for event in events:
+    _check(event, _EVENT, f'an event of {name}', time_s)
   return events
+
+
+_SHOWN = {
+  'track': klt.Track | None,
+  'segment': segmenter.Segment | None,
+}
+_EVENT = {
+  'symbol': Symbol,
+  'state': frame.State,
+  'recognition': recogniser.Recognition | None,
+  'message': payload.Payload | None,
+}
+
+
+def _check(
+  value: object, kinds: Mapping[str, type], whose: str, time_s: float
+) -> None:
+  """Refuses fields that people and files could do nothing with."""
+  for field, kind in kinds.items():
+    held = getattr(value, field, None)
+    if not isinstance(held, kind):
+      word = getattr(kind, '__name__', str(kind))
+      raise group.ReceiverError(
+        f'`{field}` of {whose} must be {word}: got {held!r} at {time_s:g} s'
+      )
 
 
 class StagedReceiver:

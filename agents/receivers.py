@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 import inspect
+from typing import Protocol
 
 from waggle_tasks.agents import config as config_lib
 from waggle_tasks.agents import (
@@ -15,9 +16,22 @@ from waggle_tasks.protocol import agreement as agreement_lib
 
 ReceiverError = group.ReceiverError
 
-# What makes a receiver of the agreement and a configuration, of which it has a
-# DEFAULT: mostly the class itself.
-Maker = Callable[[agreement_lib.Agreement, object], receiver.Receiver]
+
+class Maker(Protocol):
+  """What makes a receiver: mostly its class.
+
+  Attributes:
+    DEFAULT: The configuration that goes with it, see `receiver.Receiver`.
+  """
+
+  DEFAULT: object
+
+  def __call__(
+    self, agreement: agreement_lib.Agreement, config: object
+  ) -> receiver.Receiver:
+    """Makes a receiver at the beginning of an episode."""
+    ...
+
 
 RECEIVERS: dict[str, Maker] = {
   'klt': receiver.KltReceiver,

@@ -8,9 +8,10 @@ import re
 import shutil
 import subprocess
 
+import numpy as np
 import pytest
 
-from waggle_tasks.agents import receivers
+from waggle_tasks.agents import receiver, receivers
 from waggle_tasks.experiments import ablations, archive, nulls, variants
 
 Waggle = Callable[..., subprocess.CompletedProcess[str]]
@@ -227,6 +228,40 @@ def test_what_is_no_tuple_of_events_ends_in_one_line(
   assert child.returncode == 2
   said = '`step` of Bare must return a tuple of receiver.Event, mostly an empty'
   assert said in child.stderr.splitlines()[-1]
+
+
+@pytest.mark.parametrize(
+  ('returned', 'error'),
+  [
+    ('None', 'must return a tuple of receiver.Event, .*: got None at 2 s'),
+    ('[]', r'must return a tuple of receiver.Event, .*: got \[\] at 2 s'),
+    ('((time_s, "NULL"),)', 'must return a tuple of receiver.Event'),
+    (
+      '(event(2.0, "NULL", STATE),)',
+      '`symbol` of an event of Bare must be Sym',
+    ),
+    ('(event(2.0, NULL, "start"),)', '`state` of an event of Bare must be St'),
+    (
+      '(event(2.0, NULL, STATE, message="000010"),)',
+      "`message` of an event of Bare must be .*Payload .*: got '000010'",
+    ),
+    ('setattr(self, "track", 3) or ()', '`track` of Bare must be .*: got 3'),
+    ('setattr(self, "segment", 3) or ()', '`segment` of Bare must be .*Segm'),
+  ],
+)
+def test_what_nobody_could_use_is_refused_with_its_time(
+  returned: str, error: str, module: Callable[[str], str]
+) -> None:
+  head = (
+    'from waggle_tasks.agents.receiver import Event as event\n'
+    'from waggle_tasks.protocol import frame, symbols\n'
+    'NULL, STATE = symbols.Symbol.NULL, frame.State.START\n'
+  )
+  text = BARE.replace('return ()', f'return {returned}')
+  reader = receivers.make(f'{module(head + text)}:Bare')
+  image = np.zeros((480, 640, 3), np.uint8)
+  with pytest.raises(receivers.ReceiverError, match=error):
+    receiver.step(reader, image, 2.0)
 
 
 def test_it_may_tell_what_its_nulls_take(module: Callable[[str], str]) -> None:

@@ -6,7 +6,7 @@ from dm_control import composer
 import dm_env
 
 from waggle_tasks import scenario
-from waggle_tasks.agents import observer_agent, receivers
+from waggle_tasks.agents import observer_agent, receiver, receivers
 from waggle_tasks.experiments.bench_parts import loops, processes
 
 
@@ -46,7 +46,8 @@ class Audience:
         if readers[index] is None:
           continue
         begin_s = self._clock()
-        events = readers[index].step(each['camera'], float(each['time_s']))
+        time_s = float(each['time_s'])
+        events = receiver.step(readers[index], each['camera'], time_s)
         self.seconds[name].append(self._clock() - begin_s)
         if any(event.message for event in events):
           readers[index] = None
