@@ -493,8 +493,14 @@ def test_only_pixels_grow_with_the_focal_length(factor: float) -> None:
   assert other.recognition.max_rmse == paper.recognition.max_rmse
 
 
-def test_every_receiver_takes_a_zoom() -> None:
-  for name in receivers.RECEIVERS:
-    assert receivers.make(
-      name, agreement.Agreement(camera=camera.Camera(320, 240, 207.8))
-    )
+@pytest.mark.parametrize('name', receivers.RECEIVERS)
+def test_every_receiver_goes_by_its_own_camera(name: str) -> None:
+  focal_px = camera.Camera.focal_px / 2
+  half = agreement.Agreement(camera=camera.Camera(320, 240, focal_px))
+  large, small = receivers.describe(name), receivers.describe(name, half)
+  assert small.place.limits == (-7.5, 7.5)
+  for a, b in zip(large.speed.limits, small.speed.limits, strict=True):
+    assert b == a / 2
+  assert small.null == large.null
+  if (spans_px := large.templates().spans_px) is not None:
+    np.testing.assert_allclose(small.templates().spans_px, spans_px / 2)
