@@ -44,12 +44,12 @@ FLY = """
 import functools, pathlib, sys
 from waggle_tasks.experiments import (
   cluster, scenario_fields, sweep_cases, sweep_runner)
-folder, scheduler, *grid = sys.argv[1:]
+receiver, folder, scheduler, *grid = sys.argv[1:]
 base = scenario_fields.defaults() | {
   'control': 'no_send', 'duration_s': 1.0, 'observers': 1}
 engine = functools.partial(cluster.run, place=cluster.find(scheduler))
 sweep_runner.run(
-  sweep_cases.cases(sweep_cases.grid(grid), base, 1), 'view_bank',
+  sweep_cases.cases(sweep_cases.grid(grid), base, 1), receiver,
   pathlib.Path(folder), engine, 'waggle sweep')
 """
 
@@ -112,14 +112,42 @@ def test_a_cluster_gives_the_same_bytes_as_one_worker(
   wait_until: Callable[..., None],
 ) -> None:
   address = listening(scheduler, wait_until)
-  done = subprocess.run(
-    [sys.executable, '-c', FLY, str(sweep.folder), address, *sweep.grid],
-    capture_output=True,
-    text=True,
-    check=False,
-  )
+  done = fly('view_bank', str(sweep.folder), address, *sweep.grid)
   assert done.returncode == 0, done.stderr
   assert sweep.results() == flown.results()
+
+
+def fly(*words: str, **more: object) -> subprocess.CompletedProcess[str]:
+  """Runs `FLY`."""
+  return subprocess.run(
+    [sys.executable, '-c', FLY, *words],
+    capture_output=True, text=True, check=False, **more,
+  )  # fmt: skip
+
+
+OWN = """
+from waggle_tasks.agents import receiver
+
+class Own(receiver.Receiver):
+  def step(self, image, time_s):
+    return ()
+"""
+
+
+@needs_dask
+def test_workers_import_a_receiver_of_ones_own_by_its_name(
+  dask: Callable[..., object],
+  scheduler: pathlib.Path,
+  tmp_path: pathlib.Path,
+  wait_until: Callable[..., None],
+) -> None:
+  address = listening(scheduler, wait_until)
+  (dask.here / 'own_on_cluster.py').write_text(OWN)  # Where workers run.
+  words = str(tmp_path / 'out'), address, 'distance_m=1.3'
+  done = fly('own_on_cluster:Own', *words, cwd=dask.here)
+  assert done.returncode == 0, done.stderr
+  (row,) = (tmp_path / 'out' / 'results.jsonl').read_text().splitlines()
+  assert json.loads(row)['receiver'] == 'own_on_cluster:Own'
 
 
 @needs_dask
