@@ -271,6 +271,9 @@ class Config:
   framing: frame.Rules = frame.Rules()
   views: Views | None = None
 
+  def __post_init__(self) -> None:
+    group.check_kinds(self)
+
 
 # Trackers and templates are chosen apart from each other.
 KLT = Config()

@@ -56,6 +56,20 @@ def kinds_of(group: type) -> Mapping[str, object]:
   return {f.name: hints.get(f.name, f.type) for f in dataclasses.fields(group)}
 
 
+def check_kinds(config: object) -> None:
+  """Refuses parts of a configuration that are none of those declared.
+
+  Raises:
+    ReceiverError: naming the part and what it may be.
+  """
+  for name, kind in kinds_of(type(config)).items():
+    value = getattr(config, name)
+    if not isinstance(value, kind):
+      kinds = [each.__name__ for each in typing.get_args(kind) or (kind,)]
+      words = ' or '.join(kinds).replace('NoneType', 'None')
+      raise ReceiverError(f'`{name}` must be a {words}: got {value!r}')
+
+
 def zoomed(config: _Value, factor: float) -> _Value:
   """The same numbers for a camera of another focal length.
 

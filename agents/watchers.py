@@ -4,7 +4,7 @@ from typing import Protocol
 
 import numpy as np
 
-from waggle_tasks.agents import absolute, excursion, klt, segmenter
+from waggle_tasks.agents import absolute, excursion, group, klt, segmenter
 from waggle_tasks.agents import config as config_lib
 
 
@@ -97,7 +97,18 @@ class AbsoluteWatcher:
 
 
 def make(config: config_lib.Config) -> Watcher:
-  """The watcher of a configuration."""
-  if isinstance(config.tracking, config_lib.Differencing):
-    return AbsoluteWatcher(config.tracking, config.motion)
-  return FlowWatcher(config.tracking, config.motion)
+  """The watcher of a configuration.
+
+  Raises:
+    ReceiverError: if its tracker and its segmenter do not go together.
+  """
+  tracking, motion = config.tracking, config.motion
+  if isinstance(tracking, config_lib.Tracking):
+    if isinstance(motion, config_lib.Motion):
+      return FlowWatcher(tracking, motion)
+  elif isinstance(motion, config_lib.Excursion):
+    return AbsoluteWatcher(tracking, motion)
+  raise group.ReceiverError(
+    '`motion` must be an Excursion with Differencing, and a Motion with'
+    f' Tracking: got {motion!r}'
+  )

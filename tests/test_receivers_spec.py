@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from waggle_tasks import registry
-from waggle_tasks.agents import config, group, receivers
+from waggle_tasks.agents import config, group, receiver, receivers
 from waggle_tasks.protocol import agreement, camera, gestures, timing
 
 
@@ -178,3 +178,20 @@ def test_a_window_is_as_small_as_it_was_asked_for() -> None:
   assert group.zoomed(small, 0.1) == dataclasses.replace(
     group.zoomed(config.Tracking(), 0.1), window_px=3
   )
+
+
+@pytest.mark.parametrize(
+  ('parts', 'error'),
+  [
+    ({'tracking': 3}, '`tracking` must be a Tracking or Differencing: got 3'),
+    ({'views': ()}, r'`views` must be a Views or None: got \(\)'),
+    ({'framing': None}, '`framing` must be a Rules: got None'),
+    ({'motion': config.Excursion()}, '`motion` must be an Excursion with Diff'),
+    ({'tracking': config.Differencing()}, '`motion` must be .*: got Motion'),
+  ],
+)
+def test_parts_that_do_not_go_together_are_refused(
+  parts: dict[str, object], error: str
+) -> None:
+  with pytest.raises(receivers.ReceiverError, match=error):
+    receiver.KltReceiver(config=config.Config(**parts))
