@@ -2,47 +2,13 @@
 
 import dataclasses
 import math
-from typing import TypeVar
 
-from waggle_tasks import errors
-from waggle_tasks.protocol import checks, frame
-
-_Group = TypeVar('_Group')
-_SMALLEST_PX = 5  # A smaller window holds no corner.
-
-
-class ReceiverError(errors.WaggleError):
-  """A receiver, or a number of one, that does not exist or cannot work."""
-
-
-class _Numbers:
-  """Checks the numbers of a group when it is made."""
-
-  def __post_init__(self) -> None:
-    for field in dataclasses.fields(self):
-      value = getattr(self, field.name)
-      if field.type is bool:
-        plain = checks.switch(field.name, value, ReceiverError)
-        checks.settle(self, field.name, plain)
-      else:
-        bounds = {field.name: _LIMITS.get(field.name, (0, 1e6))}
-        checks.settle_numbers(self, bounds, ReceiverError)
-
-
-# Smallest and largest value that the tracker can work with.
-_LIMITS = {
-  'box_px': (8, 4096),
-  'max_corners': (1, 10_000),
-  'corner_quality': (1e-6, 1),
-  'window_px': (3, 255),
-  'levels': (0, 10),
-  'min_support': (1, 10_000),
-  'redetect_below': (0, 10_000),
-}
+from waggle_tasks.agents import group
+from waggle_tasks.protocol import frame
 
 
 @dataclasses.dataclass(frozen=True)
-class Tracking(_Numbers):
+class Tracking(group.Group):
   """Feature tracking; the paper names the method and gives no numbers.
 
   Attributes:
@@ -64,23 +30,23 @@ class Tracking(_Numbers):
     max_gap_s: Longest time between two images of one track.
   """
 
-  box_px: int = 72
-  max_corners: int = 40
-  corner_quality: float = 0.05
+  box_px: int = group.number(72, 8, 4096)
+  max_corners: int = group.number(40, 1, 10_000)
+  corner_quality: float = group.number(0.05, 1e-6, 1)
   corner_distance_px: float = 3.0
-  window_px: int = 15
-  levels: int = 2
+  window_px: int = group.number(15, 3, 255)
+  levels: int = group.number(2, 0, 10)
   forward_backward: bool = True
   forward_backward_px: float = 1.0
-  min_support: int = 5
-  min_quality: float = 0.2
-  redetect_below: int = 20
+  min_support: int = group.number(5, 1, 10_000)
+  min_quality: float = group.number(0.2, 0, 1)
+  redetect_below: int = group.number(20, 0, 10_000)
   coast_s: float = 0.2
   max_gap_s: float = 0.3
 
 
 @dataclasses.dataclass(frozen=True)
-class Differencing:
+class Differencing(group.Group):
   """Tracking by difference from a learned background.
 
   Attributes:
@@ -111,31 +77,31 @@ class Differencing:
     max_gap_s: Longest time between two images of one rest.
   """
 
-  learn_s: float = 1.5
-  watch_px: int = 240
-  min_contrast: float = 12.0
-  min_levels: int = 6
-  noise_levels: float = 1.5
-  box_px: int = 5
+  learn_s: float = group.number(1.5, 0.1, 600)
+  watch_px: int = group.number(240, 16, 100_000)
+  min_contrast: float = group.number(12.0, 0, 255)
+  min_levels: int = group.number(6, 1, 255)
+  noise_levels: float = group.number(1.5, 0, 255)
+  box_px: int = group.number(5, 1, 255)
   box_sigmas: float = 4.0
   watch_sigmas: float = 8.0
-  slack_px: float = 1.0
+  slack_px: float = group.number(1.0, 0, 64)
   rest_px: float = 4.0
-  speed_s: float = 0.4
-  speed_noise: float = 4.0
+  speed_s: float = group.number(0.4, 0.04, 60)
+  speed_noise: float = group.number(4.0, 0, 255)
   gate_widths: float = 0.9
   gate_px: float = 8.0
   middle_px: float = 24.0
   middle_widths: float = 1.0
-  lost_share: float = 0.1
-  most_share: float = 6.0
+  lost_share: float = group.number(0.1, 0, 1)
+  most_share: float = group.number(6.0, 1, 1000)
   separate_s: float = 4.0
   relearn_s: float = 10.0
   max_gap_s: float = 0.2
 
 
 @dataclasses.dataclass(frozen=True)
-class Motion(_Numbers):
+class Motion(group.Group):
   """When a gesture begins and ends (paper, section 'RGB optical flow').
 
   Attributes:
@@ -152,13 +118,14 @@ class Motion(_Numbers):
 
 
 @dataclasses.dataclass(frozen=True)
-class Excursion:
+class Excursion(group.Group):
   """When a gesture begins and ends, for a tracker of absolute positions.
 
   Attributes:
     radius_widths: How far from rest a target is away, in apparent widths...
     radius_px: ...and at least so far...
     on_s: ...once it has been so for this long.
+    lead_s: How long before that its way begins.
     off_px_s: Image speed below which it is at rest again (paper, section 'RGB
       optical flow')...
     off_widths_s: ...or below so many apparent widths a second: whoever hovers
@@ -173,6 +140,7 @@ class Excursion:
   radius_widths: float = 0.12
   radius_px: float = 2.0
   on_s: float = 0.08
+  lead_s: float = group.number(1.0, 0.04, 60)
   off_px_s: float = 2.5
   off_widths_s: float = 0.15
   off_s: float = 0.48
@@ -190,7 +158,7 @@ class Excursion:
 
 
 @dataclasses.dataclass(frozen=True)
-class Views:
+class Views(group.Group):
   """Where a codebook may be seen from.
 
   Attributes:
@@ -198,18 +166,26 @@ class Views:
     angles: How many, from one side to the other.
     min_distance_m: Nearest view.
     max_distance_m: Farthest view.
-    distances: How many, in equal ratios.
+    distances: How many, in equal ratios; with one, the nearest.
   """
 
-  max_angle_deg: float = 85.0
-  angles: int = 35
-  min_distance_m: float = 0.5
-  max_distance_m: float = 4.0
-  distances: int = 13
+  max_angle_deg: float = group.number(85.0, 0, 180)
+  angles: int = group.number(35, 2, 181)
+  min_distance_m: float = group.number(0.5, 0.2, 100)
+  max_distance_m: float = group.number(4.0, 0.2, 100)
+  distances: int = group.number(13, 1, 50)
+
+  def __post_init__(self) -> None:
+    super().__post_init__()
+    if self.min_distance_m > self.max_distance_m:
+      raise group.ReceiverError(
+        '`min_distance_m` must be at most `max_distance_m`,'
+        f' {self.max_distance_m:g}: got {self.min_distance_m:g}'
+      )
 
 
 @dataclasses.dataclass(frozen=True)
-class Recognition(_Numbers):
+class Recognition(group.Group):
   """When a path is a symbol (paper, section 'RGB optical flow').
 
   Attributes:
@@ -234,7 +210,7 @@ class Recognition(_Numbers):
 
 
 @dataclasses.dataclass(frozen=True)
-class Stillness(_Numbers):
+class Stillness(group.Group):
   """When stillness is a null (paper, section 'Visual null confirmation').
 
   Attributes:
@@ -245,7 +221,10 @@ class Stillness(_Numbers):
     max_widths_s: Largest speed in apparent widths of the target a second, where
       they are known and that is more; 0, as in the paper, for pixels alone.
     jump_widths: How far, in apparent widths, a picture may jump within a rest;
-      0, as in the paper, for not at all.
+      0, as in the paper, for not at all...
+    jump_s: ...and within how long it must be back at rest.
+    in_sight_s: How long the target must be seen at rest without a break before
+      a null is confirmed.
     max_stale_s: How long the images of a camera that shimmers may be stale in
       the final rest; 0, as in the paper, asks for no life.
     bridges: Whether a rest goes on after a loss of sight in which, by the
@@ -255,9 +234,11 @@ class Stillness(_Numbers):
   anchor_px: float = 15.0
   max_px_s: float = 2.5
   hold_s: float = 3.0
-  null_quality: float = 0.2
+  null_quality: float = group.number(0.2, 0, 1)
   max_widths_s: float = 0.0
   jump_widths: float = 0.0
+  jump_s: float = 0.6
+  in_sight_s: float = 0.4
   max_stale_s: float = 0.0
   bridges: bool = False
 
@@ -290,6 +271,9 @@ class Config:
   framing: frame.Rules = frame.Rules()
   views: Views | None = None
 
+  def __post_init__(self) -> None:
+    group.check_kinds(self)
+
 
 # Trackers and templates are chosen apart from each other.
 KLT = Config()
@@ -302,28 +286,6 @@ ABSOLUTE = Config(
   ),
 )
 VIEW_BANK = dataclasses.replace(ABSOLUTE, views=Views())
-
-
-def zoomed(config: _Group, factor: float) -> _Group:
-  """The same numbers for a camera of another focal length.
-
-  Everything in pixels, which is told by the unit in its name, grows with the
-  focal length; times, shares and scores stay.
-
-  Args:
-    config: A configuration or one of its groups.
-    factor: The other camera's focal length over this one's, positive.
-  """
-  changes = {}
-  for field in dataclasses.fields(config):
-    value = getattr(config, field.name)
-    if dataclasses.is_dataclass(value):
-      changes[field.name] = zoomed(value, factor)
-    elif field.name.endswith(('_px', '_px_s')):
-      kind = type(value)
-      least = _SMALLEST_PX if kind is int else 0
-      changes[field.name] = max(kind(round(value * factor, 9)), least)
-  return dataclasses.replace(config, **changes)
 
 
 def lasted(since_s: float, now_s: float, duration_s: float) -> bool:

@@ -10,7 +10,6 @@ from waggle_tasks.agents import klt, segmenter
 
 _MEAN_S = 0.08  # To either side.
 _STEP = 0.02  # Of the span.
-_LEAD_S = 1.0  # So long before a target is away its way begins.
 
 
 class ExcursionSegmenter:
@@ -73,7 +72,8 @@ class ExcursionSegmenter:
 
   def _rest(self, track: klt.Track, away: bool) -> None:
     self._lead.append(track)
-    while track.time_s - self._lead[0].time_s > _LEAD_S - 1e-6:
+    lead_s = self._config.lead_s
+    while track.time_s - self._lead[0].time_s > lead_s - 1e-6:
       self._lead.popleft()
     self._away_since_s = _since(self._away_since_s, away, track.time_s)
     if config_lib.lasted(self._away_since_s, track.time_s, self._config.on_s):

@@ -53,6 +53,7 @@ class ObserverAgent:
 
   Attributes:
     events: What it saw and did in this episode, in order.
+    read_s: Time of the last image that its receiver took; NaN before one.
   """
 
   def __init__(
@@ -69,7 +70,7 @@ class ObserverAgent:
     self._chain = provenance.Chain()
     self._command: navigator_lib.Command | None = None
     self.events: list[receiver.Event | Navigation] = []
-    self.read_s = -math.inf  # The time of the last image that was read.
+    self.read_s = math.nan
     self._time_s = -math.inf
     self._action: np.ndarray | None = None
 
@@ -106,7 +107,8 @@ class ObserverAgent:
   def _read(
     self, image: np.ndarray, position_m: np.ndarray, time_s: float
   ) -> None:
-    events = self.receiver.step(image, time_s)  # It may refuse the image.
+    events = receiver.step(self.receiver, image, time_s)  # It may refuse.
+    self.read_s = time_s
     self._chain.add(image, time_s)
     self.read_s = time_s
     for event in events:

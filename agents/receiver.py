@@ -1,12 +1,15 @@
 """Receivers: images and timestamps in, events out."""
 
+from collections.abc import Mapping
 import dataclasses
-from typing import ClassVar, Protocol
+from typing import Any, ClassVar, Protocol
 
 import numpy as np
 
 from waggle_tasks.agents import config as config_lib
 from waggle_tasks.agents import (
+  description,
+  group,
   inputs,
   klt,
   liveness,
@@ -52,17 +55,80 @@ class Event:
 class Receiver(Protocol):
   """What every receiver can do; images and times are all that it gets.
 
+  What `Class(agreement, config)` makes is at the beginning of an episode. A
+  class that has this one as a base needs only `step`.
+
   Attributes:
-    track: Where it saw the target in the last image, for people to look at.
+    DEFAULT: Its configuration, a frozen dataclass of any kind; None without
+      one. `describe` may tell people of its limits, see `receivers.describe`.
+    track: Where it saw the target in the last image, for people to look at;
+      None where it does not say.
     segment: The motion that the last image ended, for the same; or None.
   """
 
-  track: klt.Track | None
-  segment: segmenter.Segment | None
+  DEFAULT: ClassVar[object] = None
+  track: klt.Track | None = None
+  segment: segmenter.Segment | None = None
+
+  def __init__(
+    self, agreement: agreement_lib.Agreement, config: object
+  ) -> None:
+    """Makes it.
+
+    Args:
+      agreement: What both sides know; its camera is the receiver's own.
+      config: `DEFAULT`, maybe with some of its numbers changed.
+    """
 
   def step(self, image: np.ndarray, time_s: float) -> tuple[Event, ...]:
     """Takes an image, (H, W, 3) uint8 RGB, and returns what it confirms."""
     ...
+
+
+def step(
+  reader: Receiver, image: np.ndarray, time_s: float
+) -> tuple[Event, ...]:
+  """Lets a receiver take an image.
+
+  Raises:
+    ReceiverError: if it returns something else than events, or shows something
+      else than a track and a segment.
+  """
+  events, name = reader.step(image, time_s), type(reader).__name__
+  if not isinstance(events, tuple) or any(type(e) is not Event for e in events):
+    raise group.ReceiverError(
+      f'`step` of {name} must return a tuple of receiver.Event, mostly an empty'
+      f' one: got {events!r} at {time_s:g} s'
+    )
+  _check(reader, _SHOWN, name, time_s)
+  for event in events:
+    _check(event, _EVENT, f'an event of {name}', time_s)
+  return events
+
+
+_SHOWN = {
+  'track': klt.Track | None,
+  'segment': segmenter.Segment | None,
+}
+_EVENT = {
+  'symbol': Symbol,
+  'state': frame.State,
+  'recognition': recogniser.Recognition | None,
+  'message': payload.Payload | None,
+}
+
+
+def _check(
+  value: object, kinds: Mapping[str, Any], whose: str, time_s: float
+) -> None:
+  """Refuses fields that people and files could do nothing with."""
+  for field, kind in kinds.items():
+    held = getattr(value, field, None)
+    if not isinstance(held, kind):
+      word = getattr(kind, '__name__', str(kind))
+      raise group.ReceiverError(
+        f'`{field}` of {whose} must be {word}: got {held!r} at {time_s:g} s'
+      )
 
 
 class StagedReceiver:
@@ -79,9 +145,10 @@ class StagedReceiver:
 
     Args:
       agreement: What both sides know.
-      config: The receiver's numbers; None for its own.
+      config: The receiver's numbers, for the paper's camera; None for its
+        own.
     """
-    config = config or self.DEFAULT
+    config = group.zoomed(config or self.DEFAULT, agreement.camera.zoom)
     clock = agreement.clock if config.framing.clock else None
     self._watcher = watchers.make(config)
     templates = views.templates(agreement, config.views)
@@ -99,6 +166,22 @@ class StagedReceiver:
     self._where: tuple[float | None, float | None] = None, None
     self.track: klt.Track | None = None
     self.segment: segmenter.Segment | None = None
+
+  @classmethod
+  def describe(
+    cls,
+    agreement: agreement_lib.Agreement,
+    config: object,
+    width_px: float | None = None,
+  ) -> description.Description:
+    """The receiver's limits, see `receivers.describe`."""
+    if not isinstance(config, config_lib.Config):
+      return description.Description()  # Of one's own, around such a receiver.
+    config = group.zoomed(config, agreement.camera.zoom)
+    return dataclasses.replace(
+      description.of(config, width_px),
+      templates=lambda: views.templates(agreement, config.views),
+    )
 
   def step(self, image: np.ndarray, time_s: float) -> tuple[Event, ...]:
     """Takes one image, which is all that the receiver ever gets.

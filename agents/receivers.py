@@ -1,21 +1,45 @@
-"""Receivers by name, and by name with some of their numbers changed."""
+"""Receivers by name, or by module and class, with numbers changed in place."""
 
-import dataclasses
+from collections.abc import Callable, Sequence
+import inspect
+from typing import Any, Protocol
 
 from waggle_tasks.agents import config as config_lib
-from waggle_tasks.agents import receiver
+from waggle_tasks.agents import (
+  description,
+  group,
+  outsiders,
+  receiver,
+  settings,
+)
 from waggle_tasks.protocol import agreement as agreement_lib
-from waggle_tasks.protocol import checks
 
-RECEIVERS = {
+ReceiverError = group.ReceiverError
+
+
+class Maker(Protocol):
+  """What makes a receiver: mostly its class.
+
+  Attributes:
+    DEFAULT: The configuration that goes with it, see `receiver.Receiver`.
+  """
+
+  DEFAULT: object
+
+  def __call__(
+    self, agreement: agreement_lib.Agreement, config: object
+  ) -> receiver.Receiver:
+    """Makes a receiver at the beginning of an episode."""
+    ...
+
+
+RECEIVERS: dict[str, Any] = {  # A `Maker` each.
   'klt': receiver.KltReceiver,
   'klt_bank': receiver.KltBankReceiver,
   'absolute': receiver.AbsoluteReceiver,
   'view_bank': receiver.ViewBankReceiver,
 }
-
-
-ReceiverError = config_lib.ReceiverError
+_PARTS = ('step', 'track', 'segment')  # Of what was made.
 
 
 def make(
@@ -25,78 +49,104 @@ def make(
   """Makes a receiver at the beginning of an episode.
 
   Args:
-    name: One of `RECEIVERS`, as it is ('klt') or with parts of its
+    name: One of `RECEIVERS`, or a class of one's own by its place,
+      'package.module:Class'; as it is ('klt') or with parts of its
       configuration changed ('klt:corner_quality=0.1,separators=off').
     agreement: What both sides know.
 
   Raises:
-    ReceiverError: as `configured` does.
+    ReceiverError: as `configured` does; and if it is no receiver.
   """
   made, config = configured(name)
-  return made(agreement, config_lib.zoomed(config, agreement.camera.zoom))
+  _check_call(made, f'`{_plain(name)}`', ('agreement', 'config'))
+  reader = made(agreement, config)
+  if missing := [part for part in _PARTS if not hasattr(reader, part)]:
+    raise ReceiverError(
+      f'`{_plain(name)}` must have {", ".join(_PARTS)}, of which the last two'
+      f' may be None: it lacks {", ".join(missing)}'
+    )
+  _check_call(reader.step, f'`step` of {_plain(name)}', ('image', 'time_s'))
+  return reader
 
 
-def configured(
-  name: str,
-) -> tuple[type[receiver.Receiver], config_lib.Config]:
-  """The class that a name stands for and the configuration that goes with it.
+def configured(name: str) -> tuple[Maker, object]:
+  """What makes a receiver of a name, and the configuration that goes with it.
 
   Args:
     name: See `make`.
 
   Raises:
-    ReceiverError: if the name or what is changed is not known, or a value is
-      not of its type.
+    ReceiverError: if the name, the module, the class or what is changed is not
+      known, or a value is not of its type.
   """
+  made: Any
   kind, _, changes = name.partition(':')
-  checks.choice('receiver', kind, [*RECEIVERS], ReceiverError)
-  made = RECEIVERS[kind]
+  if kind in RECEIVERS:
+    made = RECEIVERS[kind]
+    outsiders.check(made, kind)
+  else:
+    made, changes = outsiders.find(kind, changes, [*RECEIVERS])
   return made, configure(changes, made.DEFAULT)
 
 
-def configure(
-  changes: str, default: config_lib.Config = config_lib.Config()
-) -> config_lib.Config:
+def configure(changes: str, default: object = config_lib.Config()) -> object:
   """A configuration with changes such as 'max_rmse=0.2,separators=off'.
 
   Args:
     changes: Names with numbers, or with 'on' or 'off'; may be empty.
-    default: What is changed.
+    default: What is changed: a frozen dataclass, of others where it has groups.
 
   Raises:
     ReceiverError: if a name is not known, or a value is not of its type.
   """
-  groups = {
-    f.name: group
-    for f in dataclasses.fields(default)
-    if (group := getattr(default, f.name)) is not None
-  }
-  homes = {
-    field.name: (group, type(getattr(value, field.name)))
-    for group, value in groups.items()
-    for field in dataclasses.fields(value)
-  }
-  for change in changes.split(',') if changes else []:
-    name, _, text = change.partition('=')
-    checks.choice('receiver number', name, [*homes], ReceiverError)
-    group, kind = homes[name]
-    value = _switch(name, text) if kind is bool else _number(name, text, kind)
-    groups[group] = dataclasses.replace(groups[group], **{name: value})
-  return config_lib.Config(**groups)
+  return settings.changed(default, changes)
 
 
-_SWITCHES = {'on': True, 'off': False}
+def describe(
+  name: str,
+  agreement: agreement_lib.Agreement = agreement_lib.Agreement(),
+  width_px: float | None = None,
+) -> description.Description:
+  """The limits of a receiver, for people.
 
+  A receiver of one's own tells them with a class method
+  `describe(agreement, config, width_px)`; one without it tells nothing.
 
-def _switch(name: str, text: str) -> bool:
-  checks.choice(name, text, [*_SWITCHES], ReceiverError)
-  return _SWITCHES[text]
+  Args:
+    name: See `make`.
+    agreement: What both sides know.
+    width_px: How wide the target is in the picture, where that is known.
 
-
-def _number(name: str, text: str, kind: type[int] | type[float]) -> float:
-  try:
-    return kind(text)
-  except ValueError:
+  Raises:
+    ReceiverError: as `configured` does.
+  """
+  made, config = configured(name)
+  tell = getattr(made, 'describe', None)
+  if tell is None:
+    return description.Description()
+  told = tell(agreement, config, width_px)
+  if not isinstance(told, description.Description):
     raise ReceiverError(
-      f'`{name}` must be of type {kind.__name__}: got {text!r}'
+      f'`describe` of {_plain(name)} must return a description.Description:'
+      f' got {told!r}'
+    )
+  return told
+
+
+def _plain(name: str) -> str:
+  """A receiver's name without what is changed."""
+  return ':'.join(each for each in name.split(':') if '=' not in each)
+
+
+def _check_call(
+  function: Callable, what: str, arguments: Sequence[str]
+) -> None:
+  """Refuses what cannot be called with these arguments in this order."""
+  try:
+    inspect.signature(function).bind(*arguments)
+  except ValueError:
+    return  # Of compiled code, which does not say what it takes.
+  except TypeError as error:
+    raise ReceiverError(
+      f'{what} must take ({", ".join(arguments)}): {error}'
     ) from None

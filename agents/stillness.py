@@ -10,9 +10,6 @@ import numpy as np
 from waggle_tasks.agents import config as config_lib
 from waggle_tasks.agents import klt
 
-_IN_SIGHT_S = 0.4  # Seen at rest without a break, after a loss.
-_JUMP_S = 0.6  # Within so long a jump of the picture is over.
-
 
 class StillnessDetector:
   """Counts how long a target has been at rest; one null per rest.
@@ -79,7 +76,7 @@ class StillnessDetector:
       self._in_sight_s = now_s
     if self._confirmed or not (
       config_lib.lasted(self.since_s, now_s, self._config.hold_s)
-      and config_lib.lasted(self._in_sight_s, now_s, _IN_SIGHT_S)
+      and config_lib.lasted(self._in_sight_s, now_s, self._config.in_sight_s)
     ):
       return False
     self._confirmed = True
@@ -90,7 +87,7 @@ class StillnessDetector:
 
     The pictures of an encoder stay behind, and then catch up at once.
     """
-    late = track.time_s - self._rested_s > _JUMP_S
+    late = track.time_s - self._rested_s > self._config.jump_s
     if math.isnan(self.since_s) or late or not self._config.jump_widths:
       return False
     way_px = float(np.hypot(*(track.centre_px - self._place_px)))

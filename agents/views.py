@@ -15,6 +15,7 @@ import math
 import numpy as np
 
 from waggle_tasks.agents import config as config_lib
+from waggle_tasks.agents import group
 from waggle_tasks.protocol import agreement as agreement_lib
 from waggle_tasks.protocol import camera as camera_lib
 from waggle_tasks.protocol import gestures
@@ -169,7 +170,11 @@ def bank(
   config: config_lib.Views,
   camera: camera_lib.Camera,
 ) -> Templates:
-  """Each gesture seen from all around, by symbol and then by view."""
+  """Each gesture seen from all around, by symbol and then by view.
+
+  Raises:
+    ReceiverError: if nothing of a gesture is in the picture of a view.
+  """
   views = tuple(
     View(float(angle), float(distance))
     for angle in np.linspace(
@@ -180,7 +185,7 @@ def bank(
     )
   )
   paths_px = [
-    [project(codebook[symbol], view, camera) for view in views]
+    [_seen(codebook[symbol], view, camera) for view in views]
     for symbol in MOTIONS
   ]
   return Templates(
@@ -188,6 +193,20 @@ def bank(
     views,
     np.array([[np.ptp(p, axis=0).max() for p in row] for row in paths_px]),
   )
+
+
+def _seen(
+  gesture: gestures.Gesture, view: View, camera: camera_lib.Camera
+) -> np.ndarray:
+  """What `project` returns, which must be more than a point."""
+  path_px = project(gesture, view, camera)
+  if not len(path_px) or not np.ptp(path_px, axis=0).any():
+    raise group.ReceiverError(
+      f'`focal_px` must be so short that {gesture.symbol} is in the picture'
+      f' from {view.distance_m:g} m and {view.angle_deg:g} degrees: got'
+      f' {camera.focal_px:g}'
+    )
+  return path_px
 
 
 def project(

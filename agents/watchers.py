@@ -4,7 +4,7 @@ from typing import Protocol
 
 import numpy as np
 
-from waggle_tasks.agents import absolute, excursion, klt, segmenter
+from waggle_tasks.agents import absolute, excursion, group, klt, segmenter
 from waggle_tasks.agents import config as config_lib
 
 
@@ -103,7 +103,11 @@ class AbsoluteWatcher:
 
 
 def make(config: config_lib.Config) -> Watcher:
-  """The watcher of a configuration."""
+  """The watcher of a configuration.
+
+  Raises:
+    ReceiverError: if its tracker and its segmenter do not go together.
+  """
   match config.tracking, config.motion:
     case (
       config_lib.Differencing() as tracking,
@@ -112,7 +116,7 @@ def make(config: config_lib.Config) -> Watcher:
       return AbsoluteWatcher(tracking, motion)
     case config_lib.Tracking() as tracking, config_lib.Motion() as motion:
       return FlowWatcher(tracking, motion)
-  raise config_lib.ReceiverError(
-    '`motion` must be an Excursion for Differencing, a Motion for Tracking: got'
-    f' {type(config.motion).__name__} for {type(config.tracking).__name__}'
+  raise group.ReceiverError(
+    '`motion` must be an Excursion with Differencing, and a Motion with'
+    f' Tracking: got {config.motion!r}'
   )

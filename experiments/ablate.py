@@ -2,8 +2,9 @@
 
 Both trackers with both kinds of templates, and then, one at a time, without
 null separators, without the confirmation by a final null, and without the
-forward-backward check. Each variant is a suite of its own in the output
-folder; ended at any moment, the same command goes on where it was.
+forward-backward check; with --receiver one receiver, and without each of its
+switches. Each variant is a suite of its own in the output folder; ended at any
+moment, the same command goes on where it was.
 """
 
 from collections.abc import Sequence
@@ -17,8 +18,11 @@ variant_runner.define('paper', 'runs/ablate')
 def main(argv: Sequence[str]) -> int:
   """Runs the variants and prints the table; 0 when it is done."""
   del argv
-  results = variant_runner.run('ablate', ablations.ABLATIONS)
-  print(ablations.report(results))
+  chosen = ablations.ABLATIONS
+  if (name := variant_runner.receiver()) is not None:
+    chosen = ablations.of(name)
+  results = variant_runner.run('ablate', chosen)
+  print(ablations.report(results, chosen))
   return 0
 
 

@@ -8,6 +8,7 @@ from collections.abc import Mapping, Sequence
 import dataclasses
 from typing import Any
 
+from waggle_tasks.agents import receivers, settings
 from waggle_tasks.experiments import table, variant_runner, verdicts
 
 Row = Mapping[str, Any]
@@ -27,7 +28,7 @@ class Ablation(variant_runner.Variant):
   """A receiver and what it lacks.
 
   Attributes:
-    full: Name in `ABLATIONS` of the receiver with that part; empty for one
+    full: Name of the ablation of the receiver with that part; empty for one
       that lacks nothing.
   """
 
@@ -35,7 +36,8 @@ class Ablation(variant_runner.Variant):
 
 
 def _without(receiver: str, part: str, label: str) -> Ablation:
-  return Ablation(label, receiver=f'{receiver}:{part}=off', full=receiver)
+  sign = ',' if '=' in receiver else ':'  # Others of its numbers are changed.
+  return Ablation(label, receiver=f'{receiver}{sign}{part}=off', full=receiver)
 
 
 ABLATIONS = {
@@ -55,6 +57,19 @@ ABLATIONS = {
     'klt', 'forward_backward', 'forward-backward'
   ),
 }
+
+
+def of(receiver: str) -> dict[str, Ablation]:
+  """A receiver, and the same without each of its switches.
+
+  Raises:
+    ReceiverError: if it is not known.
+  """
+  _, config = receivers.configured(receiver)
+  return {receiver: Ablation('nothing', receiver=receiver)} | {
+    f'{receiver}-{part}': _without(receiver, part, part.replace('_', ' '))
+    for part in settings.switches(config)
+  }
 
 
 @dataclasses.dataclass(frozen=True)
@@ -83,11 +98,14 @@ class _Counts:
     )
 
 
-def report(results: variant_runner.Results) -> str:
+def report(
+  results: variant_runner.Results, known: Mapping[str, Ablation] = ABLATIONS
+) -> str:
   """Puts what was run into a table, one line each.
 
   Args:
-    results: By names of `ABLATIONS`, the rows of their cases.
+    results: By names of ablations, the rows of their cases.
+    known: The ablations by name.
   """
   header = (
     'receiver', 'lacks', 'messages', 'groups', 'supplemental', 'controls',
@@ -96,7 +114,7 @@ def report(results: variant_runner.Results) -> str:
   counts = {name: _Counts.of(rows) for name, rows in results.items()}
   lines = []
   for name, rows in results.items():
-    ablation, own = ABLATIONS[name], counts[name]
+    ablation, own = known[name], counts[name]
     full = counts.get(ablation.full)
     lines.append(
       (

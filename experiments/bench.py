@@ -25,6 +25,12 @@ _ONLY = flags.DEFINE_list(
   'Only these parts: cameras, stages, receivers, realtime, observers, memory,'
   ' workers.',
 )
+_RECEIVER = flags.DEFINE_multi_string('receiver', None, '')
+# absl adds a sentence to the help of a flag that may be given again.
+flags.FLAGS['receiver'].help = (
+  "A receiver to measure beside the paper's; may be given again. Unset, all"
+  ' that have a name.'
+)
 _SIMULATED_S = flags.DEFINE_float(
   'simulated_s', None, 'Length of each broadcast, in s; unset, what is needed.'
 )
@@ -70,7 +76,11 @@ def _run() -> int:
     done.append(actions.check_events(_SUITE.value))
   if not done:
     settings = sections.Settings(
-      here['renderer'], _REPEATS.value, _SIMULATED_S.value, _LONG.value
+      here['renderer'],
+      _REPEATS.value,
+      _SIMULATED_S.value,
+      _LONG.value,
+      tuple(_RECEIVER.value or ()),
     )
     done.append(actions.measure(here, _ONLY.value, settings))
   if _JSON.value is not None:

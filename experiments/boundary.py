@@ -20,16 +20,19 @@ import tqdm
 
 from waggle_tasks import errors, scenario
 from waggle_tasks.agents import observer_agent, receiver, receivers
-from waggle_tasks.experiments import launch, scenario_flags, table
+from waggle_tasks.experiments import (
+  launch,
+  receiver_flag,
+  scenario_flags,
+  table,
+)
 from waggle_tasks.protocol import checks, timing
 
 if TYPE_CHECKING:
   import dm_env
 
 scenario_flags.define()
-_RECEIVER = flags.DEFINE_string(
-  'receiver', 'klt', f'One of {", ".join(receivers.RECEIVERS)}.'
-)
+_RECEIVER = receiver_flag.define()
 _OTHER = flags.DEFINE_string(
   'other_payload', '110101', 'Six bits that the other world sends.'
 )

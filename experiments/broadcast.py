@@ -24,6 +24,7 @@ from waggle_tasks.experiments import (
   launch,
   nulls,
   provenance,
+  receiver_flag,
   recording_flags,
   records,
   scenario_flags,
@@ -40,11 +41,7 @@ if TYPE_CHECKING:
 
 scenario_flags.define()
 recording_flags.define()
-_RECEIVER = flags.DEFINE_string(
-  'receiver',
-  'klt',
-  f'How observers read images. One of {", ".join(receivers.RECEIVERS)}.',
-)
+_RECEIVER = receiver_flag.define()
 _OUTPUT = flags.DEFINE_string(
   'output', None, 'Run folder to make; unset, the next runs/broadcast-N.'
 )

@@ -20,7 +20,12 @@ from typing import TYPE_CHECKING
 import uuid
 
 from waggle_tasks import errors
-from waggle_tasks.experiments import dask_probe, pool, provenance
+from waggle_tasks.experiments import (
+  dask_probe,
+  pool,
+  provenance,
+  source_files,
+)
 
 if TYPE_CHECKING:
   import distributed
@@ -199,6 +204,13 @@ def _work(job: pool.Job, theirs: tuple[str, dict[str, str]]) -> object:
       f'workers must have the versions of the client: {name} is'
       f' {versions.get(name)} on {socket.gethostname()}, not {theirs[1][name]}'
     )
+  for name, hash_there in job.modules:
+    if _module_hash(name) != hash_there:
+      raise ClusterError(
+        f'workers must have the modules of the client: {name} is missing on'
+        f' {socket.gethostname()}, or differs; put the same one on its'
+        ' PYTHONPATH and start it again'
+      )
   with _TURN:
     pool.share_cores()
     return job.work(lambda amount: None, *job.arguments)
@@ -209,3 +221,18 @@ def _origin() -> tuple[str, dict[str, str]]:
   """Sources and versions of this process; asked for when it begins."""
   digest = provenance.source_digest(provenance.source_hashes())
   return digest, provenance.versions()
+
+
+@functools.cache
+def _module_hash(name: str) -> str | None:
+  """SHA-256 of a module's file when this process first used it, or None.
+
+  What was imported stays as it was, whatever becomes of the file.
+  """
+  try:
+    spec = importlib.util.find_spec(name)
+  except (ImportError, ValueError):
+    return None
+  if spec is None or not spec.origin:
+    return None
+  return source_files.hashes({name: pathlib.Path(spec.origin)})[name]

@@ -20,7 +20,7 @@ from typing import Any
 from absl import flags
 
 from waggle_tasks import errors
-from waggle_tasks.agents import config
+from waggle_tasks.agents import receivers
 from waggle_tasks.entities import optics
 from waggle_tasks.experiments import (
   archive,
@@ -28,6 +28,7 @@ from waggle_tasks.experiments import (
   launch,
   picture_folder,
   reader,
+  receiver_flag,
   recordings,
   records,
 )
@@ -39,10 +40,9 @@ ARGUMENTS = 'FOLDER|VIDEO'
 
 _RECEIVER = flags.DEFINE_multi_string('receiver', None, '')
 # absl adds a sentence to the help of a flag that may be given again.
-flags.FLAGS[
-  'receiver'
-].help = (
+flags.FLAGS['receiver'].help = (
   "How images are read; may be given again. Unset, the run's own, or klt."
+  f' {receiver_flag.RULE}'
 )
 _ROI = flags.DEFINE_string(
   'roi', None, 'Part of the picture: left,top,width,height in pixels.'
@@ -126,8 +126,8 @@ def _video(path: pathlib.Path) -> int:
     recording = stack.enter_context(recordings.Recording(path, _FPS.value))
     focal_px = _focal_px(recording.height)
     seen = camera.Camera(recording.width, recording.height, focal_px)
-    known = agreement_lib.Agreement(camera=seen)
-    readers = [reader.Reader(name, known) for name in names]
+    agreed = agreement_lib.Agreement(camera=seen)
+    readers = [reader.Reader(name, agreed) for name in names]
     film = None
     if _ANNOTATE.value is not None:
       stack.enter_context(
@@ -149,7 +149,8 @@ def _video(path: pathlib.Path) -> int:
   if recording.note:
     print(recording.note)
   gap_s = readers[0].longest_gap_s
-  if gap_s > config.Tracking().max_gap_s + 1e-6:
+  known = [receivers.describe(name, agreed).max_gap_s for name in names]
+  if gap_s > min(filter(None, known), default=math.inf) + 1e-6:
     print(f'Pictures are missing: {gap_s:.2f} s lie between two of them.')
   for each in readers:
     said = f'message {each.message}' if each.message else 'no message'

@@ -17,6 +17,7 @@ from waggle_tasks.experiments import (
   figures,
   launch,
   png,
+  receiver_flag,
   records,
   sweep_results,
 )
@@ -25,6 +26,7 @@ _OUTPUT = flags.DEFINE_string(
   'output', 'docs/gallery', 'Folder of the pictures; those in it are replaced.'
 )
 
+_RECEIVER = receiver_flag.define()
 _SWEEP = flags.DEFINE_list('sweep', [], 'Draw the envelope of these folders.')
 
 
@@ -39,7 +41,7 @@ def main(argv: Sequence[str]) -> int:
   # Imported here: to draw maps, no simulator is needed.
   from waggle_tasks.experiments import shots
 
-  for name, picture in shots.take().items():
+  for name, picture in shots.take(_RECEIVER.value).items():
     print(png.write(folder / name, picture))
   return 0
 

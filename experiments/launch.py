@@ -70,6 +70,7 @@ def _run(name: str, argv: list[str], check_versions: bool) -> int:
     if check_versions:
       runtime.require_versions()
       health.require()
+    _see_working_folder()
     module = importlib.import_module(name)
     if {'--help', '-h'} & set(argv[1:]):
       print(help_text(program, module))
@@ -93,6 +94,18 @@ def _run(name: str, argv: list[str], check_versions: bool) -> int:
   with contextlib.suppress(OSError):  # The terminal may be gone.
     print(f'{program}: {line}', file=sys.stderr)
   return status
+
+
+def _see_working_folder() -> None:
+  """Lets a receiver of one's own be imported from the working folder.
+
+  Last of all places, so that no file there hides a module; `python -m` looks
+  there anyhow.
+  """
+  with contextlib.suppress(OSError):  # It may be gone.
+    here = os.getcwd()
+    if not sys.flags.safe_path and not {here, ''} & {*sys.path}:
+      sys.path.append(here)
 
 
 def worker_count(name: str, value: int | None) -> int:

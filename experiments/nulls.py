@@ -3,8 +3,7 @@
 from collections.abc import Sequence
 
 from waggle_tasks import errors, scenario
-from waggle_tasks.agents import config as config_lib
-from waggle_tasks.agents import receivers
+from waggle_tasks.agents import description, receivers
 from waggle_tasks.protocol import timing
 
 # A rest is seen from one image to another, and a gesture at either end of it
@@ -26,15 +25,14 @@ def needed_s(receiver_name: str) -> float | None:
     receiver_name: As `receivers.make` takes it.
 
   Returns:
-    Seconds; None for a receiver that has no such number.
+    Seconds; None for a receiver that does not tell.
   """
-  _, config = receivers.configured(receiver_name)
-  if not isinstance(config, config_lib.Config):
-    return None
-  end_s = 0.0
-  if isinstance(config.motion, config_lib.Motion):
-    end_s = config.motion.off_s
-  return round(config.stillness.hold_s + end_s + _EDGES_S, 6)
+  null = receivers.describe(receiver_name).null
+  return None if null is None else _needed_s(null)
+
+
+def _needed_s(null: description.Null) -> float:
+  return round(null.hold_s + null.end_s + _EDGES_S, 6)
 
 
 def flaw(
@@ -47,17 +45,16 @@ def flaw(
     receiver_name: As `receivers.make` takes it.
     spare_s: How much more there must be than the least.
   """
-  least_s = needed_s(receiver_name)
-  if least_s is None:
+  null = receivers.describe(receiver_name, scene.agreement).null
+  if null is None:
     return None
-  _, config = receivers.configured(receiver_name)
-  hold_s, pauses = config.stillness.hold_s, scene.pauses
+  hold_s, least_s, pauses = null.hold_s, _needed_s(null), scene.pauses
   if pauses.initial_hover_s < hold_s - 1e-6:
     return (
       f'{pauses.initial_hover_s:.2f} s before START, of which a null of'
       f' {receiver_name} takes {hold_s:.2f} s'
     )
-  if config.framing.separators and pauses.pause_s < least_s + spare_s - 1e-6:
+  if null.separators and pauses.pause_s < least_s + spare_s - 1e-6:
     return (
       f'{pauses.pause_s:.2f} s between gestures, of which a null of'
       f' {receiver_name} takes {least_s:.2f} s'

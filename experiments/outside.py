@@ -34,13 +34,15 @@ def paths(
     Each file by a name that does not tell where it lies.
 
   Raises:
+    ReceiverError: if the receiver is not known.
     UnknownSourceError: if something was made in a prompt, or by `exec`.
   """
-  kind = receiver_name.partition(':')[0]
-  roots = [receivers.RECEIVERS.get(kind), registry.build, registry.environment]
+  made, config = receivers.configured(receiver_name)
+  roots = [made, config, registry.build, registry.environment]
   for scene in scenes:  # All else in one is of this project.
     roots += type(scene), scene.layout, scene.codebook.gestures
-  seen, out = set(), {}
+  seen: set[int] = set()
+  out: dict[str, pathlib.Path] = {}
   for value in roots:
     for code in _reachable(value, seen):
       out |= source_files.of(code)
@@ -57,7 +59,21 @@ def paths(
   return out
 
 
-def _reachable(value: object, seen: set[int]) -> Iterator[object]:
+def modules(files: Mapping[str, pathlib.Path]) -> dict[str, str]:
+  """SHA-256 of modules that are found by name and are not installed.
+
+  Args:
+    files: See `paths`.
+  """
+  loose = {
+    name: path
+    for name, path in files.items()
+    if not ('/' in name or name == '__main__' or _is_installed(path))
+  }
+  return source_files.hashes(loose)
+
+
+def _reachable(value: object, seen: set[int]) -> Iterator[source_files.Code]:
   """Classes, functions and modules from outside that make up a value."""
   if isinstance(value, (str, bytes, int, float)) or id(value) in seen:
     return

@@ -48,11 +48,14 @@ class Job:
     name: For people.
     work: What to call; it and its arguments are sent to another process.
     arguments: For `work`; a function to report progress with comes first.
+    modules: Names of modules from outside of this project that it uses, and
+      the SHA-256 of each: who does it elsewhere must have the same.
   """
 
   name: str
   work: Callable
   arguments: tuple
+  modules: tuple[tuple[str, str], ...] = ()
 
 
 @dataclasses.dataclass(frozen=True)

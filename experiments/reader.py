@@ -47,7 +47,7 @@ class Reader:
   def take(self, image: np.ndarray, time_s: float) -> None:
     """Shows it an image, (H, W, 3) uint8 RGB."""
     self.chain.add(image, time_s)
-    self.events += self.receiver.step(image, time_s)
+    self.events += receiver.step(self.receiver, image, time_s)
     if self.last_s < time_s:
       self.longest_gap_s = max(self.longest_gap_s, time_s - self.last_s)
     self.last_s = time_s

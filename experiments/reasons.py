@@ -40,10 +40,11 @@ def diagnose(events: Sequence[rollout_lib.Event]) -> str:
   for number, event in enumerate(seen):
     if event.symbol == 'UNKNOWN':
       motions = sum(e.symbol != 'NULL' for e in seen[: number + 1])
-      return f'motion {motions} unknown: {event.recognition.reason}'
-  broken = next((e for e in seen if e.rejection), None)
-  if broken is not None:
-    return broken.rejection
+      why = event.recognition.reason if event.recognition else 'no scores'
+      return f'motion {motions} unknown: {why}'
+  for event in seen:
+    if event.rejection is not None:
+      return event.rejection
   return f'still waited for {seen[-1].state} at the end'
 
 

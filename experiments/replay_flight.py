@@ -78,7 +78,7 @@ def _read(
   """The first message that a receiver reads, and how many events it saw."""
   count = 0
   for image, time_s in stream:
-    for event in reader.step(image, time_s):
+    for event in receiver.step(reader, image, time_s):
       count += 1
       if event.message is not None:
         return event.message.bits, count

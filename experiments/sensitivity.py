@@ -3,8 +3,9 @@
 The paper leaves choices open: how large and how long gestures are, how the
 room looks, where the eye sits, how corners are picked. Each of them is moved
 alone, up and down; then every vehicle starts with a jitter of 1 cm, seeds 0 to
-9. Each variant is a suite of its own in the output folder; ended at any
-moment, the same command goes on where it was.
+9. --receiver does it for another one, whose own numbers stay. Each variant is a
+suite of its own in the output folder; ended at any moment, the same command
+goes on where it was.
 """
 
 from collections.abc import Sequence
@@ -18,7 +19,10 @@ variant_runner.define('standard', 'runs/sensitivity')
 def main(argv: Sequence[str]) -> int:
   """Runs the variants and prints which cases change; 0 when it is done."""
   del argv
-  results = variant_runner.run('sensitivity', variants.VARIANTS)
+  moved = variants.VARIANTS
+  if (name := variant_runner.receiver()) is not None:
+    moved = variants.of(name)
+  results = variant_runner.run('sensitivity', moved)
   print(variants.report(results))
   return 0
 

@@ -8,7 +8,7 @@ import dm_env
 import numpy as np
 
 from waggle_tasks import scenario
-from waggle_tasks.agents import observer_agent
+from waggle_tasks.agents import observer_agent, receivers
 from waggle_tasks.experiments import palette, story, traces
 from waggle_tasks.experiments import rollout as rollout_lib
 from waggle_tasks.experiments.video import film, layout, lens, page, pen
@@ -73,11 +73,19 @@ def exposures(gesture: story.Sent) -> list[int]:
   return [timing.frames(time_s) for time_s in times_s]
 
 
-def take() -> dict[str, np.ndarray]:  # (H, W, 3) uint8 each
-  """Flies the default broadcast and returns pictures by the names of files."""
+def take(receiver_name: str) -> dict[str, np.ndarray]:  # (H, W, 3) uint8 each
+  """Flies the default broadcast and returns pictures by the names of files.
+
+  Args:
+    receiver_name: Whose observers are shown.
+
+  Raises:
+    ReceiverError: if it is not known.
+  """
   scene = scenario.Scenario()
   shots = Shots(scene)
-  flown = rollout_lib.run(scene, 'klt', [shots])
+  receivers.make(receiver_name, scene.agreement)
+  flown = rollout_lib.run(scene, receiver_name, [shots])
   sent, trace = story.sent_in(scene), [*flown.traces.values()][_OBSERVER]
   return {
     'composite.png': np.asarray(shots.composite),

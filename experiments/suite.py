@@ -22,6 +22,7 @@ from waggle_tasks.experiments import (
   launch,
   nulls,
   provenance,
+  receiver_flag,
   suite_tables,
 )
 from waggle_tasks.experiments.pages import suite_page
@@ -35,11 +36,7 @@ _SUITE = flags.DEFINE_string(
   f'One of {", ".join(suites.SUITES)}, or a JSON file of your own.',
 )
 _CASE = flags.DEFINE_list('case', [], 'Only these cases, by name.')
-_RECEIVER = flags.DEFINE_string(
-  'receiver',
-  'klt',
-  f'How observers read images. One of {", ".join(receivers.RECEIVERS)}.',
-)
+_RECEIVER = receiver_flag.define()
 _WORKERS = flags.DEFINE_integer(
   'workers', None, 'How many processes; unset, one for each core.'
 )

@@ -23,6 +23,7 @@ from waggle_tasks.experiments import (
   launch,
   nulls,
   provenance,
+  receiver_flag,
   records,
   scenario_flags,
   sweep_cases,
@@ -42,11 +43,7 @@ _GRID = flags.DEFINE_multi_string(
   ' for another. payload=all stands for all 64.',
 )  # fmt: skip
 _REPEATS = flags.DEFINE_integer('repeats', 1, 'Episodes of each cell.')
-_RECEIVER = flags.DEFINE_string(
-  'receiver',
-  'klt',
-  f'How observers read images. One of {", ".join(receivers.RECEIVERS)}.',
-)
+_RECEIVER = receiver_flag.define()
 _WORKERS = flags.DEFINE_integer(
   'workers', None, 'How many processes; unset, one for each core.'
 )

@@ -74,6 +74,7 @@ def run(
     + (f' {replays} replays' if replays else '')
     for case in cases
   ]
+  modules = tuple(outside.modules(foreign).items())
   with result_folder.locked(folder, sweep_results.NAMES, 'sweep'):
     known = {
       row['identity']: row
@@ -84,7 +85,7 @@ def run(
     if replays:
       fly, more = replay_flight.fly, (replays,)
     jobs = [
-      pool.Job(case.name, fly, (case, receiver_name, identity, *more))
+      pool.Job(case.name, fly, (case, receiver_name, identity, *more), modules)
       for case, identity in zip(cases, identities, strict=True)
       if identity not in known
     ]

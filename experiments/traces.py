@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 import dataclasses
+import math
 import pathlib
 from typing import Any
 import zipfile
@@ -84,19 +85,21 @@ class Tracer:
     """
     self._tracks: list[list[klt.Track]] = [[] for _ in range(count)]
     self._motions: list[list[Motion]] = [[] for _ in range(count)]
+    self._noted_s = [-math.inf] * count
 
   def note(self, team: observer_agent.Team) -> None:
     """Takes what each receiver saw in this frame, if it took an image."""
-    for tracks, motions, agent in zip(
-      self._tracks, self._motions, team.agents, strict=True
+    for number, (tracks, motions, agent) in enumerate(
+      zip(self._tracks, self._motions, team.agents, strict=True)
     ):
-      track = agent.receiver.track
-      if track is None or (tracks and track is tracks[-1]):
+      if not agent.read_s > self._noted_s[number]:
         continue  # While it navigates, an agent reads no more.
-      tracks.append(track)
-      segment = agent.receiver.segment
+      self._noted_s[number] = agent.read_s
+      track, segment = agent.receiver.track, agent.receiver.segment
+      if track is not None:
+        tracks.append(track)
       if segment is not None:
-        motions.append(_motion(track.time_s, segment))
+        motions.append(_motion(agent.read_s, segment))
 
   def traces(self) -> tuple[Trace, ...]:
     """The traces so far, in the order of the team's agents."""

@@ -12,7 +12,8 @@ from typing import Any
 from absl import flags
 
 from waggle_tasks import suites
-from waggle_tasks.experiments import launch, provenance
+from waggle_tasks.agents import receivers
+from waggle_tasks.experiments import launch, provenance, receiver_flag
 from waggle_tasks.protocol import checks
 
 # Flags defined here belong to the launcher that asks for them.
@@ -45,12 +46,25 @@ def define(suite: str, output: str) -> None:
   """
   known = ', '.join(suites.SUITES)
   flags.DEFINE_string('suite', suite, f'One of {known}.')
+  receiver_flag.define(None)
   flags.DEFINE_list('case', [], 'Only these cases, by name.')
   flags.DEFINE_list('variant', [], 'Only these variants, by name.')
   flags.DEFINE_integer(
     'workers', None, 'How many processes; unset, one for each core.'
   )
   flags.DEFINE_string('output', output, 'Folder of the results.')
+
+
+def receiver() -> str | None:
+  """The receiver that the flags ask for, None without one.
+
+  Raises:
+    ReceiverError: if it is not known.
+  """
+  name = flags.FLAGS['receiver'].value
+  if name is not None:
+    receivers.make(name)
+  return name
 
 
 def run(command: str, variants: Mapping[str, Variant]) -> Results:
@@ -78,12 +92,13 @@ def run(command: str, variants: Mapping[str, Variant]) -> Results:
     checks.choice('variant', name, [*variants], suites.SuiteError)
   chosen = [c for c in cases if not wanted or c.name in wanted]
   workers = launch.worker_count('workers', values['workers'])
+  asked = [f'--receiver={each}'] if (each := receiver()) is not None else []
   results = {}
   for name in names or variants:
     variant = variants[name]
     print(f'{name}: {variant.label}', flush=True)
     line = provenance.command_line(
-      command, [f'--suite={suite}', f'--variant={name}']
+      command, [f'--suite={suite}', *asked, f'--variant={name}']
     )
     folder = pathlib.Path(values['output']) / name
     moved = [_moved(case, variant) for case in chosen]

@@ -4,6 +4,8 @@ The paper gives no sizes of gestures, no appearance, no settings of the tracker
 and no spacing of the line.
 """
 
+import dataclasses
+
 from waggle_tasks import appearance
 from waggle_tasks.experiments import table, variant_runner
 from waggle_tasks.protocol import gestures
@@ -56,6 +58,15 @@ VARIANTS = {
     for seed in range(10)
   },
 }
+
+
+def of(receiver: str) -> dict[str, variant_runner.Variant]:
+  """The variants for a receiver: numbers of the paper's are not moved."""
+  return {
+    name: dataclasses.replace(variant, receiver=receiver)
+    for name, variant in VARIANTS.items()
+    if variant.receiver == VARIANTS['base'].receiver
+  }
 
 
 def report(results: variant_runner.Results) -> str:

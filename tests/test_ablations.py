@@ -7,7 +7,7 @@ import cv2
 import numpy as np
 import pytest
 
-from waggle_tasks.agents import config, klt, receiver, receivers
+from waggle_tasks.agents import config, group, klt, receiver, receivers
 from waggle_tasks.protocol import agreement, frame, payload
 from waggle_tasks.protocol.symbols import Symbol
 
@@ -147,7 +147,7 @@ def test_rules_outlive_a_broken_frame(rules: frame.Rules, value: int) -> None:
 def test_a_switch_is_true_or_false() -> None:
   with pytest.raises(frame.FrameError, match='`separators` must be True or'):
     frame.Rules(separators='off')
-  with pytest.raises(config.ReceiverError, match='`forward_backward` must be'):
+  with pytest.raises(group.ReceiverError, match='`forward_backward` must be'):
     config.Tracking(forward_backward=0)
 
 

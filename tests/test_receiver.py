@@ -1,13 +1,12 @@
 """The receiver on real images: which events it confirms, and when."""
 
 from collections.abc import Callable
-import dataclasses
 
 import numpy as np
 import pytest
 
 from waggle_tasks import errors
-from waggle_tasks.agents import config, receiver, receivers, watchers
+from waggle_tasks.agents import receiver, receivers
 from waggle_tasks.protocol import agreement, frame
 from waggle_tasks.protocol.symbols import Symbol
 
@@ -146,8 +145,3 @@ def test_an_unknown_receiver_is_refused_with_the_names_there_are(
     receivers.make(name)
   assert str(caught.value).startswith('`receiver` must be one of [')
   assert repr(name) in str(caught.value)
-
-
-def test_a_tracker_and_a_motion_that_do_not_fit_are_refused() -> None:
-  with pytest.raises(config.ReceiverError, match='`motion` must be'):
-    watchers.make(dataclasses.replace(config.VIEW_BANK, motion=config.Motion()))

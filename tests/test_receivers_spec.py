@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from waggle_tasks import registry
-from waggle_tasks.agents import config, receivers
-from waggle_tasks.protocol import timing
+from waggle_tasks.agents import config, group, receiver, receivers
+from waggle_tasks.protocol import agreement, camera, gestures, timing
 
 
 def numbers(value: config.Config) -> dict[str, float]:
@@ -113,3 +113,85 @@ def test_a_changed_number_is_the_one_that_reads(
   assert [event.symbol for event in events] == ['NULL'] * (null_s is not None)
   if events:
     assert events[0].time_s == pytest.approx(null_s, abs=0.09)
+
+
+# What was once flown, or is close to what makes sense; with the limit's name.
+REFUSED = (
+  'angles=0', 'angles=1', 'angles=-3', 'distances=0', 'max_angle_deg=181',
+  'max_angle_deg=nan', 'min_distance_m=0', 'min_distance_m=5',
+  'max_distance_m=-1', 'learn_s=nan', 'learn_s=0', 'watch_px=0',
+  'min_contrast=256', 'min_levels=0', 'noise_levels=-1', 'box_px=0',
+  'box_sigmas=-1', 'slack_px=-1', 'speed_s=0', 'gate_widths=-0.1',
+  'gate_px=inf', 'lost_share=1.1', 'most_share=0.5', 'separate_s=-1',
+  'relearn_s=nan', 'max_gap_s=-1', 'radius_widths=nan', 'radius_px=-2',
+  'on_s=-1', 'lead_s=0', 'off_s=nan', 'jump_s=-1', 'stay_s=-1',
+  'outside_s=-inf', 'null_quality=2', 'in_sight_s=nan',
+)  # fmt: skip
+
+
+@pytest.mark.parametrize('change', REFUSED)
+def test_numbers_that_cannot_work_are_refused(change: str) -> None:
+  name, _, value = change.partition('=')
+  rule = f'^`{name}` must be .*: got {value}'
+  with pytest.raises(receivers.ReceiverError, match=rule):
+    receivers.configured(f'view_bank:{change}')
+
+
+def test_limits_are_changed_together() -> None:
+  _, found = receivers.configured('view_bank:min_distance_m=5,max_distance_m=6')
+  assert (found.views.min_distance_m, found.views.max_distance_m) == (5.0, 6.0)
+
+
+@pytest.mark.parametrize('change', ['angles=2', 'distances=1,angles=181',
+                                    'max_angle_deg=180,min_distance_m=0.2',
+                                    'max_angle_deg=0'])  # fmt: skip
+def test_views_within_their_limits_can_be_made(change: str) -> None:
+  large = agreement.Agreement(codebook=gestures.v_codebook(1.2, 2.0, 60.0))
+  reader = receivers.make(f'view_bank:{change}', large)
+  told = receivers.describe(f'view_bank:{change}', large)
+  assert np.isfinite(told.templates().paths).all()
+  assert reader.step(np.zeros((480, 640, 3), np.uint8), 0.0) == ()
+
+
+@pytest.mark.parametrize('name', receivers.RECEIVERS)
+@pytest.mark.parametrize('focal_px', [1.0, 30.0, 3000.0])
+def test_no_camera_makes_a_number_that_is_refused(
+  name: str, focal_px: float
+) -> None:
+  seen = camera.Camera(focal_px=focal_px)
+  receivers.make(name, agreement.Agreement(camera=seen))
+
+
+def test_a_camera_that_shows_no_gesture_is_refused_by_banks_of_views() -> None:
+  seen = agreement.Agreement(camera=camera.Camera(focal_px=1e5))
+  for name in ('klt', 'absolute'):
+    receivers.make(name, seen)
+  error = r'`focal_px` must be so short that START is in the picture .* 100000'
+  for name in ('klt_bank', 'view_bank'):
+    with pytest.raises(receivers.ReceiverError, match=error):
+      receivers.make(name, seen)
+
+
+def test_a_window_is_as_small_as_it_was_asked_for() -> None:
+  small = config.Tracking(window_px=3)
+  assert group.zoomed(small, 1.0) == small
+  assert group.zoomed(small, 0.1) == dataclasses.replace(
+    group.zoomed(config.Tracking(), 0.1), window_px=3
+  )
+
+
+@pytest.mark.parametrize(
+  ('parts', 'error'),
+  [
+    ({'tracking': 3}, '`tracking` must be a Tracking or Differencing: got 3'),
+    ({'views': ()}, r'`views` must be a Views or None: got \(\)'),
+    ({'framing': None}, '`framing` must be a Rules: got None'),
+    ({'motion': config.Excursion()}, '`motion` must be an Excursion with Diff'),
+    ({'tracking': config.Differencing()}, '`motion` must be .*: got Motion'),
+  ],
+)
+def test_parts_that_do_not_go_together_are_refused(
+  parts: dict[str, object], error: str
+) -> None:
+  with pytest.raises(receivers.ReceiverError, match=error):
+    receiver.KltReceiver(config=config.Config(**parts))

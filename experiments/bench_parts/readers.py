@@ -1,5 +1,7 @@
 """What each receiver costs, all of them on the same images."""
 
+from collections.abc import Sequence
+
 from dm_control import composer
 import dm_env
 
@@ -9,20 +11,25 @@ from waggle_tasks.experiments.bench_parts import loops, processes
 
 
 class Audience:
-  """A watcher that lets every receiver read what each observer sees.
+  """A watcher that lets several receivers read what each observer sees.
 
   Attributes:
     seconds: By receiver, what each image took until it had the message.
   """
 
-  def __init__(self, scene: scenario.Scenario, clock: processes.Clock) -> None:
+  def __init__(
+    self,
+    scene: scenario.Scenario,
+    clock: processes.Clock,
+    names: Sequence[str],
+  ) -> None:
     """Makes new receivers for every observer of a scenario."""
     self._clock = clock
     self._readers: dict[str, list[receiver.Receiver | None]] = {
       name: [
         receivers.make(name, scene.agreement) for _ in range(scene.observers)
       ]
-      for name in receivers.RECEIVERS
+      for name in names
     }
     self.seconds: dict[str, list[float]] = {n: [] for n in self._readers}
 
@@ -39,24 +46,28 @@ class Audience:
         reader = readers[index]
         if reader is None:
           continue
+        time_s = float(each['time_s'])
         begin_s = self._clock()
-        events = reader.step(each['camera'], float(each['time_s']))
+        events = receiver.step(reader, each['camera'], time_s)
         self.seconds[name].append(self._clock() - begin_s)
         if any(event.message for event in events):
           readers[index] = None
 
 
 def measure(
-  scene: scenario.Scenario, repeats: int, clock: processes.Clock
+  scene: scenario.Scenario,
+  repeats: int,
+  clock: processes.Clock,
+  names: Sequence[str],
 ) -> list[dict[str, list[float]]]:
-  """Runs a broadcast for all receivers at a time.
+  """Runs a broadcast for receivers of some names at a time.
 
   Returns:
     For each repeat, by receiver, the seconds of every image.
   """
   out = []
   for _ in range(repeats):
-    audience = Audience(scene, clock)
+    audience = Audience(scene, clock, names)
     loops.run(scene, clock, [audience])
     out.append(audience.seconds)
   return out

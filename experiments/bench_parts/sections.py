@@ -4,6 +4,7 @@ from collections.abc import Sequence
 import dataclasses
 
 from waggle_tasks import errors, registry, scenario
+from waggle_tasks.agents import receivers
 from waggle_tasks.experiments.bench_parts import (
   cameras,
   loops,
@@ -36,15 +37,20 @@ class Settings:
     simulated_s: Length of each broadcast, up to 600 s; None for whole ones,
       and the first gesture with its pauses where many are needed.
     long: Whether memory is watched over whole broadcasts.
+    receivers: Those that are measured beside the paper's; without any, all of
+      `receivers.RECEIVERS`.
   """
 
   renderer: str
   repeats: int = 3
   simulated_s: float | None = None
   long: bool = False
+  receivers: tuple[str, ...] = ()
 
   def __post_init__(self) -> None:
     checks.integer('repeats', self.repeats, 1, 1000, BenchError)
+    for name in self.receivers:
+      receivers.make(name)
     if self.simulated_s is not None:
       low, high = 2 * timing.FRAME_S, 600.0
       checks.number('simulated_s', self.simulated_s, low, high, BenchError)
@@ -106,10 +112,12 @@ def measure_stages(settings: Settings) -> list[dict[str, float]]:
 
 
 def measure_receivers(settings: Settings) -> list[dict[str, list[float]]]:
-  """All receivers on the same images."""
+  """Receivers on the same images."""
+  names = settings.receivers or [*receivers.RECEIVERS]
   return processes.alone(
-    readers.measure, settings.whole, settings.repeats, settings.clock
-  )
+    readers.measure, settings.whole, settings.repeats, settings.clock,
+    [*dict.fromkeys([loops.RECEIVER, *names])],
+  )  # fmt: skip
 
 
 def measure_realtime(settings: Settings) -> list[loops.Loop]:

@@ -5,11 +5,10 @@ from collections.abc import Sequence
 import numpy as np
 
 from waggle_tasks.agents import config as config_lib
-from waggle_tasks.agents import receiver, views
+from waggle_tasks.agents import description, receiver, views
 from waggle_tasks.experiments import palette
 from waggle_tasks.experiments import traces as traces_lib
 from waggle_tasks.experiments.pages import markup, plot
-from waggle_tasks.protocol import agreement as agreement_lib
 from waggle_tasks.protocol import gestures
 from waggle_tasks.protocol.symbols import MOTIONS, Symbol
 
@@ -20,21 +19,19 @@ _EDGE = (30.0, 8.0)  # Around the plot: left and below, right and above.
 def draw(
   events: Sequence[receiver.Event],
   trace: traces_lib.Trace | None,
-  agreement: agreement_lib.Agreement,
-  config: config_lib.Config,
+  told: description.Description,
 ) -> markup.Markup:
   """One figure for each motion.
 
   Args:
     events: The motions that one observer recognised, or did not.
     trace: What it saw, when that was kept.
-    agreement: What both sides knew.
-    config: What it was compared with, and what scores are held against.
+    told: What it was compared with, and what scores are held against.
   """
   motions = {m.confirmed_s: m for m in trace.motions} if trace else {}
-  templates = views.templates(agreement, config.views)
+  templates = told.templates() if told.templates else None
   figures = [
-    _figure(number, event, motions.get(event.time_s), templates, config)
+    _figure(number, event, motions.get(event.time_s), templates, told)
     for number, event in enumerate(events, 1)
   ]
   return markup.tag('div', *figures, class_='gestures')
@@ -44,8 +41,8 @@ def _figure(
   number: int,
   event: receiver.Event,
   motion: traces_lib.Motion | None,
-  templates: views.Templates,
-  config: config_lib.Config,
+  templates: views.Templates | None,
+  told: description.Description,
 ) -> markup.Markup:
   unknown = event.symbol is Symbol.UNKNOWN
   colour = palette.SYMBOLS[event.symbol]
@@ -66,7 +63,7 @@ def _figure(
     reason = markup.join([reason, said])
   return markup.tag(
     'figure', caption, _plot(event, motion, templates),
-    _scores(event, motion, config.recognition), reason,
+    _scores(event, motion, told.recognition), reason,
     class_='unknown' if unknown else None,
   )  # fmt: skip
 
@@ -74,21 +71,24 @@ def _figure(
 def _plot(
   event: receiver.Event,
   motion: traces_lib.Motion | None,
-  templates: views.Templates,
+  templates: views.Templates | None,
 ) -> markup.Markup:
-  """The normalised track over the best and the second template."""
+  """The normalised track, over the best and the second template if any."""
   path_px = motion.path_px if motion else np.empty((0, 2))
   if len(path_px) < 2 or not np.ptp(path_px, axis=0).any():
     return markup.tag('p', 'no track', class_='blank')
   track = gestures.normalise(path_px)
-  errors = templates.errors(track)  # (4, V)
-  best, second = np.argsort(errors.min(axis=1), kind='stable')[:2]
-  nearest = templates.paths[np.arange(len(errors)), errors.argmin(axis=1)]
-  curves = [
-    (nearest[best], 'best', f'best: {MOTIONS[best]}'),
-    (nearest[second], 'second', f'second: {MOTIONS[second]}'),
-    (track, 'track', 'track'),
-  ]
+  curves, hint = [(track, 'track', 'track')], 'track of the motion'
+  if templates is not None:
+    errors = templates.errors(track)  # (4, V)
+    best, second = np.argsort(errors.min(axis=1), kind='stable')[:2]
+    nearest = templates.paths[np.arange(len(errors)), errors.argmin(axis=1)]
+    curves = [
+      (nearest[best], 'best', f'best: {MOTIONS[best]}'),
+      (nearest[second], 'second', f'second: {MOTIONS[second]}'),
+      *curves,
+    ]
+    hint += f' over {MOTIONS[best]} and {MOTIONS[second]}'
   points = np.concatenate([curve for curve, _, _ in curves])
   middle = (points.min(axis=0) + points.max(axis=0)) / 2
   half = 0.54 * np.ptp(points, axis=0).max()
@@ -107,7 +107,6 @@ def _plot(
     )  # fmt: skip
     out.append(plot.text(left + 27, row, name, class_='tick'))
   width, height = left + _SIDE + rest, rest + _SIDE + 64
-  hint = f'track of the motion over {MOTIONS[best]} and {MOTIONS[second]}'
   return markup.tag(
     'svg', *out, viewBox=f'0 0 {width:g} {height:g}', role='img',
     aria_label=hint,
@@ -142,11 +141,11 @@ def _axes(x: plot.Scale, y: plot.Scale) -> markup.Markup:
 def _scores(
   event: receiver.Event,
   motion: traces_lib.Motion | None,
-  limits: config_lib.Recognition,
+  limits: config_lib.Recognition | None,
 ) -> markup.Markup | None:
-  """Every score with its limit and whether it keeps it."""
+  """Every score with its limit and whether it keeps it, where that is told."""
   scores = event.recognition
-  if scores is None:
+  if scores is None or limits is None:
     return None
   rows = []
   if motion is not None:  # It alone tells whether the width is known.

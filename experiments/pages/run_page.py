@@ -8,16 +8,14 @@ import math
 import pathlib
 from typing import Any
 
-from waggle_tasks.agents import config as config_lib
 from waggle_tasks.agents import receivers
 from waggle_tasks.experiments import archive, changes, palette, story
 from waggle_tasks.experiments.pages import (
   document,
   flights,
-  gesture_plots,
   markup,
+  observer_part,
   room,
-  signals,
   timelines,
 )
 from waggle_tasks.protocol import payload
@@ -62,14 +60,13 @@ def videos(folder: pathlib.Path) -> list[str]:
 
 def draw(run: archive.Run, films: Sequence[str]) -> markup.Markup:
   """The page as text: equal data gives equal bytes."""
-  _, config = receivers.configured(run.config['receiver'])
   outcomes = run.result['outcomes']
   body = [
     _head(run),
     _failures(outcomes),
     _film(run, films),
     _flights(run),
-    *(_observer(run, outcome, config) for outcome in outcomes),
+    *(observer_part.draw(run, outcome) for outcome in outcomes),
     _provenance(run),
   ]
   return document.page(_title(run), body, _facts(run))
@@ -248,53 +245,6 @@ def _dance(run: archive.Run) -> list[markup.Markup]:
     return []
   title = 'What the performer flew, from the front; world x and height in m'
   return [tag('h3', title), drawn]
-
-
-def _observer(
-  run: archive.Run, outcome: Mapping, config: config_lib.Config
-) -> markup.Markup:
-  name = outcome['observer']
-  trace = run.traces.get(name)
-  events = timelines.motions(run.events[name])
-  plots = tag('p', 'No track was kept.', class_='faint')
-  if trace is not None and len(trace.times_s):
-    plots = tag('div', signals.draw(trace, run.end_s, config), class_='scroll')
-  return tag(
-    'section',
-    tag(
-      'h2', name, ' ', document.chip(not outcome['failures'], _word(outcome))
-    ),
-    _outcome(outcome),
-    plots,
-    tag('h3', f'Motions of {name}'),
-    gesture_plots.draw(events, trace, run.agreement, config)
-    if events
-    else tag('p', 'It saw no motion.', class_='faint'),
-    id=name,
-    class_='observer',
-  )
-
-
-def _word(outcome: Mapping) -> str:
-  if outcome['failures']:
-    return 'failed'
-  return 'passed' if outcome['expected'] else 'waited, as it should'
-
-
-def _outcome(outcome: Mapping) -> markup.Markup:
-  columns = (
-    ('sent', 'expected', 0, 1), ('decoded', 'decoded', 0, 1),
-    ('END, s', 'end_s', 2, 1), ('final null, s', 'final_null_s', 2, 1),
-    ('start, s', 'start_s', 2, 1), ('arrival, s', 'arrival_s', 2, 1),
-    ('error, mm', 'error_m', 2, 1e3), ('hold, s', 'hold_s', 2, 1),
-  )  # fmt: skip
-  cells = []
-  for _, field, digits, scale in columns:
-    value = outcome[field]
-    if isinstance(value, float):
-      value = f'{value * scale:.{digits}f}'
-    cells.append('\u2013' if value is None else value)
-  return markup.table(('', *(name for name, *_ in columns)), [['', *cells]])
 
 
 def _provenance(run: archive.Run) -> markup.Markup:

@@ -125,12 +125,13 @@ def _marks(
   for x in (-half, half):
     for y in (-half, half):
       corner = np.array([(0.5 * x, y), (x, y), (x, 0.5 * y)])
-      where = sight.track.centre_px * zoom
+      where = np.asarray(sight.track.centre_px) * zoom
       pen.outline(picture, corner + where, colour, plan.px(2))
   if not sight.track.valid:
     word = 'lost' if len(sight.trail_px) else 'searching'
     size = plan.px(_SIZE)
-    left, top = np.rint(sight.track.centre_px * zoom - half).astype(int)
+    place = np.asarray(sight.track.centre_px) * zoom
+    left, top = np.rint(place - half).astype(int)
     where = max(int(left), 0), max(int(top) - size, size)
     pen.chip(picture, word, *where, size, colour)
 

@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 from waggle_tasks import suites
-from waggle_tasks.agents import config, receivers
+from waggle_tasks.agents import config, group, receivers
 from waggle_tasks.experiments import capture, reader, recordings, records
 from waggle_tasks.experiments import rollout as rollout_lib
 from waggle_tasks.protocol import agreement, camera, gestures
@@ -482,7 +482,7 @@ def test_bad_arguments_are_one_line_and_exit_status_2(
 
 @pytest.mark.parametrize('factor', [0.25, 0.5, 1.0, 4.0])
 def test_only_pixels_grow_with_the_focal_length(factor: float) -> None:
-  paper, other = config.Config(), config.zoomed(config.Config(), factor)
+  paper, other = config.Config(), group.zoomed(config.Config(), factor)
   assert other.recognition.min_span_px == factor * 28
   assert other.motion.on_px_s == factor * 3.5
   assert other.stillness.max_px_s == factor * 2.5
@@ -494,8 +494,14 @@ def test_only_pixels_grow_with_the_focal_length(factor: float) -> None:
   assert other.recognition.max_rmse == paper.recognition.max_rmse
 
 
-def test_every_receiver_takes_a_zoom() -> None:
-  for name in receivers.RECEIVERS:
-    assert receivers.make(
-      name, agreement.Agreement(camera=camera.Camera(320, 240, 207.8))
-    )
+@pytest.mark.parametrize('name', receivers.RECEIVERS)
+def test_every_receiver_goes_by_its_own_camera(name: str) -> None:
+  focal_px = camera.Camera.focal_px / 2
+  half = agreement.Agreement(camera=camera.Camera(320, 240, focal_px))
+  large, small = receivers.describe(name), receivers.describe(name, half)
+  assert small.place.limits == (-7.5, 7.5)
+  for a, b in zip(large.speed.limits, small.speed.limits, strict=True):
+    assert b == a / 2
+  assert small.null == large.null
+  if (spans_px := large.templates().spans_px) is not None:
+    np.testing.assert_allclose(small.templates().spans_px, spans_px / 2)

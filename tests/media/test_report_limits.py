@@ -10,7 +10,7 @@ import types
 import pytest
 
 from waggle_tasks import scenario
-from waggle_tasks.agents import receivers
+from waggle_tasks.agents import description, receivers
 from waggle_tasks.experiments import (
   evaluator,
   provenance,
@@ -100,20 +100,35 @@ def test_a_track_by_flow_has_the_papers_with_any_templates(
 def test_changed_numbers_are_those_of_the_page(
   runs: dict[str, Run], tmp_path: pathlib.Path
 ) -> None:
-  _, config = receivers.configured(
-    'absolute:radius_px=7,off_px_s=30,min_span_widths=0.5,lost_share=0.3'
-  )
   run = runs['view_bank']
   trace = run.rollout.traces['observer_1']
-  drawn = signals.draw(trace, 60.0, config)
+  told = receivers.describe(
+    'absolute:radius_px=7,off_px_s=30,min_span_widths=0.5,lost_share=0.3',
+    width_px=signals.width_px(trace),
+  )
+  drawn = signals.draw(trace, 60.0, told)
   assert 'by 7.0 px (0.12 widths, at least 7 px)' in drawn
   assert 'under 30.0 px/s (0.15 widths/s, at least 30 px/s)' in drawn
   assert 'the track 0.3' in drawn
   events = [e for e in run.rollout.events['observer_1'] if e.time_s < 10][1:2]
-  agreed = scenario.Scenario().agreement
-  scores = gesture_plots.draw(events, trace, agreed, config)
+  scores = gesture_plots.draw(events, trace, told)
   least_px = 0.5 * trace.motions[0].width_px
   assert f'{least_px:.3g} (0.5 widths)' in scores
+
+
+def test_what_a_receiver_does_not_tell_is_left_out(
+  runs: dict[str, Run],
+) -> None:
+  run = runs['view_bank']
+  trace = run.rollout.traces['observer_1']
+  drawn = signals.draw(trace, 60.0, description.Description())
+  assert 'speed, px/s, log, over time' in drawn
+  assert 'dashed' not in drawn
+  events = [e for e in run.rollout.events['observer_1'] if e.time_s < 10][1:2]
+  figures = gesture_plots.draw(events, trace, description.Description())
+  assert 'aria-label="track of the motion"' in figures
+  assert 'best' not in figures
+  assert 'RMSE' not in figures
 
 
 def test_widths_are_kept_with_the_tracks(runs: dict[str, Run]) -> None:

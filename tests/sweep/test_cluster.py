@@ -17,7 +17,13 @@ from unittest import mock
 
 import pytest
 
-from waggle_tasks.experiments import cluster, dask_probe, pool, provenance
+from waggle_tasks.experiments import (
+  cluster,
+  dask_probe,
+  outside,
+  pool,
+  provenance,
+)
 
 
 def _ipv6() -> bool:
@@ -38,12 +44,12 @@ FLY = """
 import functools, pathlib, sys
 from waggle_tasks.experiments import (
   cluster, scenario_fields, sweep_cases, sweep_runner)
-folder, scheduler, *grid = sys.argv[1:]
+receiver, folder, scheduler, *grid = sys.argv[1:]
 base = scenario_fields.defaults() | {
   'control': 'no_send', 'duration_s': 1.0, 'observers': 1}
 engine = functools.partial(cluster.run, place=cluster.find(scheduler))
 sweep_runner.run(
-  sweep_cases.cases(sweep_cases.grid(grid), base, 1), 'view_bank',
+  sweep_cases.cases(sweep_cases.grid(grid), base, 1), receiver,
   pathlib.Path(folder), engine, 'waggle sweep')
 """
 
@@ -106,14 +112,42 @@ def test_a_cluster_gives_the_same_bytes_as_one_worker(
   wait_until: Callable[..., None],
 ) -> None:
   address = listening(scheduler, wait_until)
-  done = subprocess.run(
-    [sys.executable, '-c', FLY, str(sweep.folder), address, *sweep.grid],
-    capture_output=True,
-    text=True,
-    check=False,
-  )
+  done = fly('view_bank', str(sweep.folder), address, *sweep.grid)
   assert done.returncode == 0, done.stderr
   assert sweep.results() == flown.results()
+
+
+def fly(*words: str, **more: object) -> subprocess.CompletedProcess[str]:
+  """Runs `FLY`."""
+  return subprocess.run(
+    [sys.executable, '-c', FLY, *words],
+    capture_output=True, text=True, check=False, **more,
+  )  # fmt: skip
+
+
+OWN = """
+from waggle_tasks.agents import receiver
+
+class Own(receiver.Receiver):
+  def step(self, image, time_s):
+    return ()
+"""
+
+
+@needs_dask
+def test_workers_import_a_receiver_of_ones_own_by_its_name(
+  dask: Callable[..., object],
+  scheduler: pathlib.Path,
+  tmp_path: pathlib.Path,
+  wait_until: Callable[..., None],
+) -> None:
+  address = listening(scheduler, wait_until)
+  (dask.here / 'own_on_cluster.py').write_text(OWN)  # Where workers run.
+  words = str(tmp_path / 'out'), address, 'distance_m=1.3'
+  done = fly('own_on_cluster:Own', *words, cwd=dask.here)
+  assert done.returncode == 0, done.stderr
+  (row,) = (tmp_path / 'out' / 'results.jsonl').read_text().splitlines()
+  assert json.loads(row)['receiver'] == 'own_on_cluster:Own'
 
 
 @needs_dask
@@ -357,8 +391,10 @@ def test_without_the_extra_the_line_that_mends_it_is_told(
 # What a worker refuses before it flies anything.
 
 
-def _work(digest: str, versions: dict[str, str]) -> object:
-  job = pool.Job('a', lambda report, value: value, (3,))
+def _work(
+  digest: str, versions: dict[str, str], *modules: tuple[str, str]
+) -> object:
+  job = pool.Job('a', lambda report, value: value, (3,), modules)
   return cluster._work(job, (digest, versions))
 
 
@@ -384,3 +420,23 @@ def test_a_worker_of_other_versions_is_refused(digest: str) -> None:
     match=f'must have the versions of the client: mujoco is {here} on .* 9.9',
   ):
     _work(digest, versions)
+
+
+def test_a_worker_of_another_receiver_is_refused(
+  digest: str, tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+  monkeypatch.syspath_prepend(tmp_path)
+  path = tmp_path / 'kept_receiver.py'
+
+  def work() -> object:
+    files = outside.modules({'kept_receiver': path})
+    return _work(digest, provenance.versions(), *files.items())
+
+  error = 'must have the modules of the client: kept_receiver is missing on'
+  path.write_text('# first')
+  assert work() == 3
+  path.write_text('# edited, but the worker still has what it imported')
+  with pytest.raises(cluster.ClusterError, match=error):
+    work()
+  with pytest.raises(cluster.ClusterError, match='nowhere is missing on'):
+    _work(digest, provenance.versions(), ('nowhere', 'a'))

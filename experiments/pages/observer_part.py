@@ -1,0 +1,74 @@
+"""What one observer saw and did, for the page of a run."""
+
+from collections.abc import Mapping
+
+from waggle_tasks.agents import description, outsiders, receivers
+from waggle_tasks.experiments import archive
+from waggle_tasks.experiments import traces as traces_lib
+from waggle_tasks.experiments.pages import (
+  document,
+  gesture_plots,
+  markup,
+  signals,
+  timelines,
+)
+
+tag = markup.tag
+
+
+def draw(run: archive.Run, outcome: Mapping) -> markup.Markup:
+  """An observer's outcome, what it saw, and its motions."""
+  name = outcome['observer']
+  trace = run.traces.get(name)
+  told = _told(run, trace)
+  events = timelines.motions(run.events[name])
+  plots = tag('p', 'No track was kept.', class_='faint')
+  if trace is not None and len(trace.times_s):
+    plots = tag('div', signals.draw(trace, run.end_s, told), class_='scroll')
+  return tag(
+    'section',
+    tag(
+      'h2', name, ' ', document.chip(not outcome['failures'], _word(outcome))
+    ),
+    _outcome(outcome),
+    plots,
+    tag('h3', f'Motions of {name}'),
+    gesture_plots.draw(events, trace, told)
+    if events
+    else tag('p', 'It saw no motion.', class_='faint'),
+    id=name,
+    class_='observer',
+  )
+
+
+def _told(
+  run: archive.Run, trace: traces_lib.Trace | None
+) -> description.Description:
+  """The limits of the run's receiver, where it is on this machine."""
+  width_px = None if trace is None else signals.width_px(trace)
+  try:
+    return receivers.describe(run.config['receiver'], run.agreement, width_px)
+  except outsiders.MissingError:  # A page needs no more than the data.
+    return description.Description()
+
+
+def _word(outcome: Mapping) -> str:
+  if outcome['failures']:
+    return 'failed'
+  return 'passed' if outcome['expected'] else 'waited, as it should'
+
+
+def _outcome(outcome: Mapping) -> markup.Markup:
+  columns = (
+    ('sent', 'expected', 0, 1), ('decoded', 'decoded', 0, 1),
+    ('END, s', 'end_s', 2, 1), ('final null, s', 'final_null_s', 2, 1),
+    ('start, s', 'start_s', 2, 1), ('arrival, s', 'arrival_s', 2, 1),
+    ('error, mm', 'error_m', 2, 1e3), ('hold, s', 'hold_s', 2, 1),
+  )  # fmt: skip
+  cells = []
+  for _, field, digits, scale in columns:
+    value = outcome[field]
+    if isinstance(value, float):
+      value = f'{value * scale:.{digits}f}'
+    cells.append('\u2013' if value is None else value)
+  return markup.table(('', *(name for name, *_ in columns)), [['', *cells]])
