@@ -76,7 +76,7 @@ setuptools.setup(
     'Topic :: Scientific/Engineering :: Image Recognition',
   ],
   license='Apache-2.0',
-  license_files=['LICENSE'],
+  license_files=['LICENSE', 'CITATION.cff'],  # So sources hold both.
   python_requires='>=3.11,<3.13',
   packages=packages(),
   package_dir={
