@@ -3,10 +3,10 @@
 from collections.abc import Callable
 import json
 import pathlib
+import re
 import signal
 import subprocess
 import sys
-import time
 
 import pytest
 
@@ -210,11 +210,10 @@ def test_an_interrupted_run_leaves_no_half_written_file(
     text=True,
     cwd=tmp_path,
   )
-  deadline = time.monotonic() + 60
-  while not [*tmp_path.iterdir()] and time.monotonic() < deadline:
-    time.sleep(0.05)
-  time.sleep(1.0)  # The episode is under way.
-  assert child.poll() is None
+  said = ''
+  while not re.search(r' [1-9]\d*/104 s simulated', said):
+    said += child.stderr.read(1)  # Until the episode is under way.
+    assert child.poll() is None, said
   child.send_signal(number)
   _, err = child.communicate(timeout=60)
   assert child.returncode != 0

@@ -147,7 +147,7 @@ def stories(draw: st.DrawFn) -> list[Timed]:
   return events
 
 
-@hypothesis.settings(max_examples=400)
+@hypothesis.settings(max_examples=200)
 @hypothesis.given(stories())
 def test_a_message_is_accepted_iff_a_whole_frame_came_in_its_time(
   events: list[Timed],

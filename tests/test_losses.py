@@ -50,8 +50,15 @@ def hidden(
   return spoilers.Loss(kind, begin_s, end_s - begin_s)
 
 
-@pytest.mark.parametrize('name', ['klt', 'view_bank'])
-@pytest.mark.parametrize('control', HIDDEN)
+@pytest.mark.parametrize(
+  ('control', 'name'),
+  [
+    ('seven_bits', 'klt'),
+    pytest.param('begun_anew', 'klt', marks=pytest.mark.slow),
+    pytest.param('run_together', 'klt', marks=pytest.mark.slow),
+    *((control, 'view_bank') for control in HIDDEN),
+  ],
+)
 def test_with_a_part_hidden_no_message_is_read(
   control: str, name: str, flown: Flown
 ) -> None:

@@ -301,7 +301,9 @@ if __name__ == '__main__':
 """
 
 
-@pytest.mark.parametrize('command', ['sweep', 'suite'])
+@pytest.mark.parametrize(
+  'command', ['sweep', pytest.param('suite', marks=pytest.mark.slow)]
+)
 def test_an_edited_receiver_is_flown_anew(
   command: str, tmp_path: pathlib.Path
 ) -> None:

@@ -291,6 +291,7 @@ def test_open_choices_but_for_the_papers_own_are_moved_with_it() -> None:
   assert 'dim' not in left_out
 
 
+@pytest.mark.slow
 def test_an_edited_one_is_flown_anew(
   waggle: Waggle, tmp_path: pathlib.Path
 ) -> None:

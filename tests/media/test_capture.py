@@ -174,9 +174,9 @@ class Trackless:
   track = None
   segment = None
 
-  def step(self, image: np.ndarray, time_s: float) -> list[object]:
+  def step(self, image: np.ndarray, time_s: float) -> tuple[()]:
     del image, time_s
-    return []
+    return ()
 
 
 def test_what_a_receiver_without_a_track_takes_is_captured(
