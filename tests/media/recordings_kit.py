@@ -211,13 +211,19 @@ def _lit(gain: float, offset: float) -> Change:
   return lambda image: cv2.LUT(image, table)
 
 
+_FAR = 'between two pictures the target moves farther than flow follows'
+_FEW = 'corners are fewer, or farther apart, than the paper asks for'
+_JUMPY = 'still pictures jump by more than the 2.5 px/s of a null'
+
+
 def _rates() -> tuple[Kind, ...]:
   rates = ('10', '12.5', '15', '24', '30000/1001', '50', '60000/1001', '60')
   out = []
   for text in rates:
     rate_hz = fractions.Fraction(text)
     name = f'{float(rate_hz):.4g}'.replace('.', 'p')
-    out.append(Kind(f'h264-{name}hz.mp4', rate_hz=rate_hz))
+    klt = _FAR if rate_hz == 10 else ''
+    out.append(Kind(f'h264-{name}hz.mp4', rate_hz=rate_hz, klt=klt))
   return tuple(out)
 
 
@@ -232,26 +238,28 @@ KINDS = (
   Kind(
     'h264-crf23-medium.mp4', options=(('crf', '23'), ('preset', 'medium'))
   ),
-  Kind('hevc.mp4', 'libx265', _crf(28)),
+  Kind('hevc.mp4', 'libx265', _crf(28), klt=_JUMPY),
   Kind('mjpeg.avi', 'mjpeg', (('q', '3'),)),
   Kind('vp8.webm', 'libvpx', _BY_BITS),
   Kind('vp9.webm', 'libvpx-vp9', _BY_BITS),
-  Kind('gif-10hz.gif', 'gif', (), fractions.Fraction(10)),
+  Kind('gif-10hz.gif', 'gif', (), fractions.Fraction(10), klt=_FAR),
   *_rates(),
   Kind('h264-late-and-lost.mkv', retime=_late_and_lost),
   Kind('h264-news-only.mkv', retime=_news_only),
-  Kind('h264-320x240.mp4', change=_quarter, focal_px=FOCAL_PX / 2),
+  Kind(
+    'h264-320x240.mp4', change=_quarter, focal_px=FOCAL_PX / 2, klt=_FEW
+  ),
   Kind(
     'h264-1280x720-bars.mp4', change=_barred(1280, 720),
     focal_px=FOCAL_PX * 1.5,
   ),
   Kind(
     'h264-1920x1080-bars.mp4', change=_barred(1920, 1080),
-    focal_px=FOCAL_PX * 2.25,
+    focal_px=FOCAL_PX * 2.25, klt=_FEW,
   ),
   Kind(
     'h264-1920x1080-narrow-pixels.mp4', change=_wide,
-    aspect=fractions.Fraction(3, 4), focal_px=FOCAL_PX * 2.25,
+    aspect=fractions.Fraction(3, 4), focal_px=FOCAL_PX * 2.25, klt=_FEW,
   ),
   Kind('h264-480x480.mp4', change=_square),
   Kind('h264-dark.mp4', change=_lit(0.3, 0)),
