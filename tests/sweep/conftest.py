@@ -4,6 +4,7 @@ from collections.abc import Callable, Iterator, Sequence
 import dataclasses
 import functools
 import pathlib
+import subprocess
 import types
 
 import numpy as np
@@ -25,6 +26,7 @@ from waggle_tasks.experiments import rollout as rollout_lib
 # where it says nothing.
 Fate = Callable[[sweep_cases.Case, int], dict[str, object]]
 Row = dict[str, object]
+Waggle = Callable[..., subprocess.CompletedProcess[str]]
 
 # Nothing is sent, so that a second is enough.
 BRIEF = {'control': 'no_send', 'duration_s': 1.0, 'observers': 1}
@@ -138,3 +140,9 @@ def flown(tmp_path_factory: pytest.TempPathFactory) -> Sweep:
   flown = Sweep(tmp_path_factory.mktemp('flown') / 'results')
   flown.fly()
   return flown
+
+
+@pytest.fixture
+def here(waggle: Waggle, tmp_path: pathlib.Path) -> Waggle:
+  """Runs `waggle` in a folder of its own."""
+  return functools.partial(waggle, cwd=tmp_path)

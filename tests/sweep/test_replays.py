@@ -1,7 +1,6 @@
 """A flight's images, shown again and again, each time spoilt in another way."""
 
 from collections.abc import Callable
-import functools
 import json
 import pathlib
 import subprocess
@@ -82,12 +81,6 @@ def test_each_number_draws_another_exposure_and_always_the_same() -> None:
   text = ' '.join(names())
   for kind in (*spoilers.LOSSES, *spoilers.LASTING):
     assert kind in text
-
-
-@pytest.fixture
-def here(waggle: Waggle, tmp_path: pathlib.Path) -> Waggle:
-  """Runs `waggle` in a folder of its own."""
-  return functools.partial(waggle, cwd=tmp_path)
 
 
 def test_a_sweep_of_replays_counts_every_exposure(

@@ -1,7 +1,6 @@
 """`waggle sweep` as its user sees it: its tables, its files, its errors."""
 
 from collections.abc import Callable
-import functools
 import json
 import pathlib
 import re
@@ -15,12 +14,6 @@ from waggle_tasks.experiments import figures
 
 Waggle = Callable[..., subprocess.CompletedProcess[str]]
 BRIEF = ('--control=no_send', '--duration_s=0.04', '--observers=1')
-
-
-@pytest.fixture
-def here(waggle: Waggle, tmp_path: pathlib.Path) -> Waggle:
-  """Runs `waggle` in a folder of its own."""
-  return functools.partial(waggle, cwd=tmp_path)
 
 
 def test_a_grid_is_flown_and_mapped(
