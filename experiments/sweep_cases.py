@@ -90,9 +90,11 @@ def cases(
 ) -> tuple[Case, ...]:
   """Every case of a sweep, cell by cell.
 
-  Each case has a seed of its own: 32 bits of a SHA-256 of the base's seed, the
-  cell and the repeat. A random payload comes from six other bits of it. So
-  more values or more repeats leave the other cases as they are.
+  Each case has a seed of its own: 32 bits of a SHA-256 of the repeat and of all
+  values of its scenario that are not the defaults, the base's seed among them.
+  A random payload comes from six other bits of it. So more factors, values or
+  repeats leave the other cases as they are, and two sweeps never share a case
+  unless it is the same scenario.
 
   Args:
     factors: See `grid`.
@@ -124,12 +126,16 @@ def _case(
   cell: Mapping[str, Any], base: Mapping[str, Any], repeat: int
 ) -> Case:
   values = {**base, **cell}
-  # Sorted, so that the order of the factors does not matter.
-  name = cell_name(dict(sorted(cell.items())))
-  text = f'{base["seed"]} {name} {repeat}'
-  drawn = hashlib.sha256(text.encode()).digest()
+  drawn = hashlib.sha256(_seed_text(values, repeat).encode()).digest()
   values['seed'] = int.from_bytes(drawn[:4], 'big')
   if values['payload'] == RANDOM:
     number = drawn[4] % 2**_PAYLOAD_BITS
     values['payload'] = f'{number:0{_PAYLOAD_BITS}b}'
   return Case(cell, repeat, values, scenario_fields.make(values))
+
+
+def _seed_text(values: Mapping[str, Any], repeat: int) -> str:
+  """What a case's seed is drawn from: the same whichever way it was said."""
+  usual = scenario_fields.defaults()
+  unusual = {n: v for n, v in sorted(values.items()) if v != usual[n]}
+  return f'{cell_name(unusual)} #{repeat}'

@@ -1,6 +1,7 @@
 """A sweep's results as tables for people."""
 
 from collections.abc import Sequence
+import json
 
 from waggle_tasks.experiments import (
   envelope,
@@ -108,9 +109,11 @@ def totals(rows: Sequence[envelope.Row]) -> list[str]:
   if stages := envelope.flaws_of_right(rows):
     listed = ', '.join(f'{name} {count}' for name, count in stages.items())
     lines.append(f'checks failed although reading was right: {listed}')
-  if len(rows) < n:
+  # Two sweeps may hold the same broadcast: it counts once.
+  told = {json.dumps(row['scenario'], sort_keys=True) for row in rows}
+  if len(told) < n:
     lines.append(
-      f'The {n} exposures are those of {len(rows)} broadcasts; observers of'
+      f'The {n} exposures are those of {len(told)} broadcasts; observers of'
       ' one share its performer and scene, which the limits do not know.'
     )
   return lines

@@ -157,6 +157,11 @@ def test_observers_of_one_broadcast_are_said_to_share_it(make: object) -> None:
   assert 'The 3 exposures are those of 1 broadcasts' in text
 
 
+def test_a_broadcast_of_two_sweeps_counts_once(make: object) -> None:
+  text = sweep_tables.report(2 * make.rows(observers=3), None)
+  assert 'The 6 exposures are those of 1 broadcasts' in text
+
+
 # Fits.
 
 

@@ -53,6 +53,16 @@ def test_more_values_and_repeats_leave_the_other_cases_as_they_are(
   assert all(case.scene in scenes for case in few)
 
 
+def test_another_scenario_is_another_draw_however_it_is_said(
+  make: Make,
+) -> None:
+  (swept,) = make.cases('distance_m=1.6', 'observers=1', 'bearing_deg=0')
+  (said,) = make.cases(distance_m=1.6, observers=1)
+  (other,) = make.cases('distance_m=1.6', 'observers=1', gap_s=2.5)
+  assert swept.scene == said.scene
+  assert swept.scene.seed != other.scene.seed
+
+
 def test_another_base_seed_gives_other_seeds_and_payloads(make: Make) -> None:
   one, other = (
     make.cases(repeats=30, payload='random', seed=seed) for seed in (0, 1)
