@@ -85,10 +85,16 @@ def _grain(rng: np.random.RandomState) -> Spoiler:
       height, width = image.shape[:2]
       if pool is None:
         size = _POOL * height, _POOL * width, 3
-        pool = rng.normal(0.0, sigma, size).astype(np.int16)
+        noise = rng.normal(0.0, sigma, size)
+        # Apart, as whole numbers of one byte are added many times as fast.
+        pool = [
+          np.clip(each, 0, 255).astype(np.uint8) for each in (noise, -noise)
+        ]
       top, left = rng.randint(height), rng.randint(width)
-      noise = pool[top : top + height, left : left + width]
-      yield cv2.add(image, noise, dtype=cv2.CV_8U), time_s
+      more, less = (
+        each[top : top + height, left : left + width] for each in pool
+      )
+      yield cv2.subtract(cv2.add(image, more), less), time_s
 
   return spoil
 
@@ -242,12 +248,13 @@ def draw(
     length_s: How long the flight lasts.
   """
   rng = np.random.RandomState(seed)
-  losses = tuple(
-    _loss(rng, agreed, length_s)
-    for _ in range(rng.randint(0, _MOST_LOSSES + 1))
-  )
   name = rng.choice([*LASTING]) if rng.rand() < _LASTING_SHARE else ''
   first = (LASTING[name](rng),) if name else ()
+  fewest = 0 if name else 1  # An exposure that is not spoilt is no other one.
+  losses = tuple(
+    _loss(rng, agreed, length_s)
+    for _ in range(rng.randint(fewest, _MOST_LOSSES + 1))
+  )
   return Spoiling(losses, str(name), (*first, *losses))
 
 
