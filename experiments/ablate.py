@@ -10,18 +10,20 @@ moment, the same command goes on where it was.
 from collections.abc import Sequence
 import sys
 
-from waggle_tasks.experiments import ablations, launch, variant_runner
+from waggle_tasks.experiments import launch
+from waggle_tasks.experiments.flags import variant_flags
+from waggle_tasks.experiments.studies import ablations
 
-variant_runner.define('paper', 'runs/ablate')
+variant_flags.define('paper', 'runs/ablate')
 
 
 def main(argv: Sequence[str]) -> int:
   """Runs the variants and prints the table; 0 when it is done."""
   del argv
   chosen = ablations.ABLATIONS
-  if (name := variant_runner.receiver()) is not None:
+  if (name := variant_flags.receiver()) is not None:
     chosen = ablations.of(name)
-  results = variant_runner.run('ablate', chosen)
+  results = variant_flags.run('ablate', chosen)
   print(ablations.report(results, chosen))
   return 0
 

@@ -56,18 +56,19 @@ def main(argv: Sequence[str]) -> int:
   del argv  # All is in the flags.
   # Imported here, as processes that measure import this module when it is run
   # by itself, and must not load a GL stack before they are confined.
-  from waggle_tasks.experiments import records
+  from waggle_tasks.experiments.record import folders
 
   with contextlib.ExitStack() as stack:
     if _JSON.value is not None:
-      stack.enter_context(records.claimed(pathlib.Path(_JSON.value), 'json'))
+      stack.enter_context(folders.claimed(pathlib.Path(_JSON.value), 'json'))
     return _run()
 
 
 def _run() -> int:
   """Does it, and leaves all numbers in the file whose name is claimed."""
-  from waggle_tasks.experiments import files, records
   from waggle_tasks.experiments.bench_parts import actions, sections
+  from waggle_tasks.experiments.machine import files
+  from waggle_tasks.experiments.record import encoding
 
   here, done = actions.machine(), []
   if _CHECK.value:
@@ -85,7 +86,7 @@ def _run() -> int:
     done.append(actions.measure(here, _ONLY.value, settings))
   if _JSON.value is not None:
     found = {name: value for each in done for name, value in each.found.items()}
-    files.put(pathlib.Path(_JSON.value), records.pretty({**here, **found}))
+    files.put(pathlib.Path(_JSON.value), encoding.pretty({**here, **found}))
   print('\n\n'.join(each.text for each in done))
   return 0 if all(each.passed for each in done) else 1
 

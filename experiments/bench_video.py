@@ -16,14 +16,10 @@ import time
 from absl import flags
 
 from waggle_tasks import scenario
-from waggle_tasks.experiments import (
-  capture,
-  launch,
-  provenance,
-  records,
-  table,
-)
-from waggle_tasks.experiments.pages import document
+from waggle_tasks.experiments import launch
+from waggle_tasks.experiments.machine import table
+from waggle_tasks.experiments.pages import document, run_page
+from waggle_tasks.experiments.record import capture, provenance, writer
 
 _REPEATS = flags.DEFINE_integer(
   'repeats', 3, 'How often each is run.', lower_bound=1
@@ -61,8 +57,8 @@ def main(argv: Sequence[str]) -> int:
 def plain(scene: scenario.Scenario) -> float:
   """Seconds that a run takes that leaves nothing."""
   # Imported here: help needs no simulator.
-  from waggle_tasks.experiments import evaluator
-  from waggle_tasks.experiments import rollout as rollout_lib
+  from waggle_tasks.experiments.episodes import evaluator
+  from waggle_tasks.experiments.episodes import rollout as rollout_lib
 
   began_s = time.perf_counter()
   evaluator.evaluate(scene, rollout_lib.run(scene, 'klt'))
@@ -75,8 +71,8 @@ def filmed(scene: scenario.Scenario) -> tuple[float, dict[str, int]]:
   The raw captures are made in a run of their own.
   """
   # Imported here: help needs no simulator.
-  from waggle_tasks.experiments import evaluator
-  from waggle_tasks.experiments import rollout as rollout_lib
+  from waggle_tasks.experiments.episodes import evaluator
+  from waggle_tasks.experiments.episodes import rollout as rollout_lib
   from waggle_tasks.experiments.video import film
 
   with tempfile.TemporaryDirectory() as name:
@@ -87,7 +83,8 @@ def filmed(scene: scenario.Scenario) -> tuple[float, dict[str, int]]:
       rollout = rollout_lib.run(scene, 'klt', [camera])
     verdict = evaluator.evaluate(scene, rollout)
     origin = provenance.Provenance.of('', rollout.renderer, began)
-    records.write_run(folder, scene, 'klt', rollout, verdict, origin)
+    writer.write_run(folder, scene, 'klt', rollout, verdict, origin)
+    run_page.write(folder)
     took_s = time.perf_counter() - began_s
     with capture.Recorder(folder) as recorder:
       rollout_lib.run(scene, 'klt', [recorder])

@@ -9,27 +9,20 @@ images are swapped: their events must swap. Exit status 0 when both hold, 1
 when not.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 import dataclasses
 import sys
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from absl import flags
-import numpy as np
 import tqdm
 
-from waggle_tasks import errors, scenario
-from waggle_tasks.agents import observer_agent, receiver, receivers
-from waggle_tasks.experiments import (
-  launch,
-  receiver_flag,
-  scenario_flags,
-  table,
-)
+from waggle_tasks import errors
+from waggle_tasks.agents import receiver, receivers
+from waggle_tasks.experiments import launch
+from waggle_tasks.experiments.flags import receiver_flag, scenario_flags
+from waggle_tasks.experiments.machine import table
 from waggle_tasks.protocol import checks, timing
-
-if TYPE_CHECKING:
-  import dm_env
 
 scenario_flags.define()
 _RECEIVER = receiver_flag.define()
@@ -38,128 +31,9 @@ _OTHER = flags.DEFINE_string(
 )
 _SWAP = flags.DEFINE_list('swap', ['1', '2'], 'Two observers, by number.')
 
-Images = list[np.ndarray]
-Events = list[list[receiver.Event]]
-
 
 class SwapError(errors.WaggleError):
   """Observers that cannot be swapped."""
-
-
-class _World:
-  """An environment, its team, and what the team is shown instead."""
-
-  def __init__(self, scene: scenario.Scenario, receiver_name: str) -> None:
-    # Imported here: help needs no simulator.
-    from waggle_tasks import registry
-
-    self.team = observer_agent.Team(
-      scene.observers, receiver_name, scene.agreement
-    )
-    self.environment = registry.environment(scene)
-    self.timestep: dm_env.TimeStep = self.environment.reset()
-
-  @property
-  def images(self) -> Images:
-    """What the observers' cameras see now, one for each."""
-    return [each['camera'] for each in self.timestep.observation]
-
-  def shown(self, images: Images) -> list[dict[str, np.ndarray]]:
-    """What this world's observers observe, but for the images."""
-    return [
-      {**observation, 'camera': image}
-      for observation, image in zip(
-        self.timestep.observation, images, strict=True
-      )
-    ]
-
-  def step(self, images: Images) -> None:
-    """Lets the team act on images."""
-    action = self.team.step(self.shown(images))
-    if not self.timestep.last():
-      self.timestep = self.environment.step(action)
-
-  @property
-  def seen(self) -> Events:
-    """What each receiver saw so far."""
-    return _seen(self.team)
-
-
-class _Probe:
-  """A team in another world, one of which has its images of its own world."""
-
-  def __init__(
-    self, scene: scenario.Scenario, receiver_name: str, index: int
-  ) -> None:
-    # Imported here: help needs no simulator.
-
-    self.team = observer_agent.Team(
-      scene.observers, receiver_name, scene.agreement
-    )
-    self._index = index
-
-  def step(self, own: Images, foreign: _World) -> None:
-    """Shows the team the other world, and one of it its own image."""
-    images = foreign.images
-    images[self._index] = own[self._index]
-    self.team.step(foreign.shown(images))
-
-  @property
-  def seen(self) -> list[receiver.Event]:
-    """What the one receiver saw so far."""
-    return _seen(self.team)[self._index]
-
-
-def _seen(team: observer_agent.Team) -> Events:
-  return [
-    [e for e in agent.events if isinstance(e, receiver.Event)]
-    for agent in team.agents
-  ]
-
-
-def experiment(
-  scene: scenario.Scenario,
-  other: scenario.Scenario,
-  receiver_name: str,
-  swap: tuple[int, int],
-  tick: Callable[[], object] = lambda: None,
-) -> tuple[Events, Events, Events]:
-  """Runs three worlds side by side.
-
-  Args:
-    scene: The scenario whose images are used.
-    other: A scenario that differs in everything else.
-    receiver_name: The receiver.
-    swap: Indices of the observers whose images are swapped.
-    tick: Called after each frame.
-
-  Returns:
-    For each observer its events: in its own world, in the other world with
-    its own images, and in its own world with two observers' images swapped.
-  """
-  own, foreign = (_World(each, receiver_name) for each in (scene, other))
-  swapped = _World(scene, receiver_name)
-  probes = [
-    _Probe(scene, receiver_name, index) for index in range(scene.observers)
-  ]
-  worlds = (own, foreign, swapped)
-  order = list(range(scene.observers))
-  order[swap[0]], order[swap[1]] = swap[1], swap[0]
-  try:
-    for _ in range(timing.frames(scene.episode_s)):
-      images = own.images
-      own.step(images)
-      for probe in probes:
-        probe.step(images, foreign)
-      foreign.step(foreign.images)
-      swapped.step([images[k] for k in order])
-      tick()
-      if own.timestep.last():
-        break
-  finally:
-    for world in worlds:
-      world.environment.close()
-  return own.seen, [probe.seen for probe in probes], swapped.seen
 
 
 def main(argv: Sequence[str]) -> int:
@@ -175,8 +49,11 @@ def main(argv: Sequence[str]) -> int:
       f'`other_payload` must differ from `payload`: got {other.payload}'
     )
   swap = _swap(scene.observers)
+  # Imported here: help needs no simulator.
+  from waggle_tasks.experiments.episodes import boundary_worlds
+
   with tqdm.tqdm(total=timing.frames(scene.episode_s), desc='frames') as bar:
-    own, foreign, swapped = experiment(
+    own, foreign, swapped = boundary_worlds.experiment(
       scene, other, _RECEIVER.value, swap, bar.update
     )
   expected = list(own)

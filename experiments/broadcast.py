@@ -18,21 +18,24 @@ from absl import flags
 
 from waggle_tasks import scenario
 from waggle_tasks.agents import observer_agent, receivers
-from waggle_tasks.experiments import (
-  episode,
-  job_progress,
-  launch,
-  nulls,
-  provenance,
+from waggle_tasks.experiments import launch
+from waggle_tasks.experiments.flags import (
   receiver_flag,
   recording_flags,
-  records,
   scenario_flags,
-  source_files,
-  table,
-  verdicts,
 )
-from waggle_tasks.experiments.pages import document
+from waggle_tasks.experiments.machine import table
+from waggle_tasks.experiments.pages import document, run_page
+from waggle_tasks.experiments.record import (
+  episode,
+  folders,
+  nulls,
+  provenance,
+  source_files,
+  verdicts,
+  writer,
+)
+from waggle_tasks.experiments.studies import job_progress
 from waggle_tasks.protocol import timing
 
 if TYPE_CHECKING:
@@ -53,7 +56,7 @@ def main(argv: Sequence[str]) -> int:
   receivers.make(_RECEIVER.value, scene.agreement)
   nulls.check([scene], _RECEIVER.value)
   # Imported here: help needs no simulator.
-  from waggle_tasks.experiments import evaluator, outside
+  from waggle_tasks.experiments.episodes import evaluator, outside
 
   command = provenance.command_line('broadcast', launch.given_flags())
   try:
@@ -66,10 +69,11 @@ def main(argv: Sequence[str]) -> int:
     with recording_flags.recorders(draft, scene) as watchers:
       rollout = _roll(scene, _RECEIVER.value, watchers)
     verdict = evaluator.evaluate(scene, rollout)
-    records.write_run(
+    writer.write_run(
       draft, scene, _RECEIVER.value, rollout, verdict,
       provenance.Provenance.of(command, rollout.renderer, began, foreign),
     )  # fmt: skip
+  run_page.leave(folder)
   print(report(scene, verdict))
   print(f'Run folder: {folder}, report: {folder / document.NAME}')
   return 0 if verdict.passed else 1
@@ -79,11 +83,11 @@ def main(argv: Sequence[str]) -> int:
 def _folder() -> Iterator[tuple[pathlib.Path, pathlib.Path]]:
   """A draft of the run folder of the flags, and that folder."""
   if not _OUTPUT.value:
-    with records.next_folder('broadcast') as pair:
+    with folders.next_folder('broadcast') as pair:
       yield pair
     return
   folder = pathlib.Path(_OUTPUT.value)
-  with records.new_folder(folder) as draft:
+  with folders.new_folder(folder) as draft:
     yield draft, folder
 
 
@@ -93,7 +97,7 @@ def _roll(
   watchers: Sequence[episode.Watcher],
 ) -> episode.Rollout:
   """Runs the episode behind a progress bar of simulated seconds."""
-  from waggle_tasks.experiments import rollout as rollout_lib
+  from waggle_tasks.experiments.episodes import rollout as rollout_lib
 
   form = '{desc}: {percentage:3.0f}%|{bar}| {n:.0f}/{total:.0f} s'
   with job_progress.seconds_bar(

@@ -22,17 +22,10 @@ from absl import flags
 from waggle_tasks import errors
 from waggle_tasks.agents import receivers
 from waggle_tasks.entities import optics
-from waggle_tasks.experiments import (
-  archive,
-  capture,
-  launch,
-  picture_folder,
-  reader,
-  receiver_flag,
-  recordings,
-  records,
-)
-from waggle_tasks.experiments.video import annotated
+from waggle_tasks.experiments import launch
+from waggle_tasks.experiments.flags import receiver_flag
+from waggle_tasks.experiments.record import archive, capture, folders, reader
+from waggle_tasks.experiments.video import annotated, picture_folder, recordings
 from waggle_tasks.protocol import agreement as agreement_lib
 from waggle_tasks.protocol import camera, checks
 
@@ -131,7 +124,7 @@ def _video(path: pathlib.Path) -> int:
     film = None
     if _ANNOTATE.value is not None:
       stack.enter_context(
-        records.claimed(pathlib.Path(_ANNOTATE.value), 'annotate')
+        folders.claimed(pathlib.Path(_ANNOTATE.value), 'annotate')
       )
       film = annotated.Film(pathlib.Path(_ANNOTATE.value), readers[0])
       stack.enter_context(film)

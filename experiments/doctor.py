@@ -11,7 +11,8 @@ import sys
 
 from absl import flags
 
-from waggle_tasks.experiments import gl, health, launch
+from waggle_tasks.experiments import launch
+from waggle_tasks.experiments.machine import gl, health
 
 _OUTPUT = flags.DEFINE_string(
   'output', '.', 'Folder that runs will be written under.'

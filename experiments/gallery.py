@@ -12,15 +12,11 @@ import sys
 
 from absl import flags
 
-from waggle_tasks.experiments import (
-  envelope,
-  figures,
-  launch,
-  png,
-  receiver_flag,
-  records,
-  sweep_results,
-)
+from waggle_tasks.experiments import launch
+from waggle_tasks.experiments.flags import receiver_flag
+from waggle_tasks.experiments.record import folders
+from waggle_tasks.experiments.results import envelope, figures, png
+from waggle_tasks.experiments.studies import sweep_results
 
 _OUTPUT = flags.DEFINE_string(
   'output', 'docs/gallery', 'Folder of the pictures; those in it are replaced.'
@@ -34,12 +30,12 @@ def main(argv: Sequence[str]) -> int:
   """Flies the broadcast and writes the pictures; returns the exit status."""
   del argv
   folder = pathlib.Path(_OUTPUT.value)
-  records.check_writable(folder)
+  folders.check_writable(folder)
   if _SWEEP.value:
     print(*_envelope(folder, _SWEEP.value), sep='\n')
     return 0
   # Imported here: to draw maps, no simulator is needed.
-  from waggle_tasks.experiments import shots
+  from waggle_tasks.experiments.video import shots
 
   for name, picture in shots.take(_RECEIVER.value).items():
     print(png.write(folder / name, picture))

@@ -22,8 +22,7 @@ import types
 from absl import flags
 
 from waggle_tasks import errors, runtime
-from waggle_tasks.experiments import files, gl, health, terminal
-from waggle_tasks.protocol import checks
+from waggle_tasks.experiments.machine import files, gl, health, terminal
 
 BAD_INPUT = 2
 INTERRUPTED = 130
@@ -106,21 +105,6 @@ def _see_working_folder() -> None:
     here = os.getcwd()
     if not sys.flags.safe_path and not {here, ''} & {*sys.path}:
       sys.path.append(here)
-
-
-def worker_count(name: str, value: int | None) -> int:
-  """Returns how many workers a flag asks for, one a core if it is not given.
-
-  Args:
-    name: The flag.
-    value: What it says.
-
-  Raises:
-    WaggleError: if it asks for none, or for too many.
-  """
-  if value is None:
-    return len(os.sched_getaffinity(0))
-  return checks.integer(name, value, 1, 1024, errors.WaggleError)
 
 
 def given_flags() -> list[str]:

@@ -9,7 +9,8 @@ import sys
 
 import waggle_tasks
 from waggle_tasks import errors
-from waggle_tasks.experiments import launch, terminal
+from waggle_tasks.experiments import launch
+from waggle_tasks.experiments.machine import terminal
 
 # Name of a module in this folder -> what it does, in one line.
 COMMANDS = {

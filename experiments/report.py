@@ -11,8 +11,9 @@ import sys
 
 from absl import flags
 
-from waggle_tasks.experiments import launch, sweep_output, sweep_results
-from waggle_tasks.experiments.pages import run_page, suite_page
+from waggle_tasks.experiments import launch
+from waggle_tasks.experiments.pages import run_page, suite_page, sweep_output
+from waggle_tasks.experiments.studies import sweep_results
 
 ARGUMENTS = 'FOLDER'
 

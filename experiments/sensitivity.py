@@ -11,18 +11,20 @@ goes on where it was.
 from collections.abc import Sequence
 import sys
 
-from waggle_tasks.experiments import launch, variant_runner, variants
+from waggle_tasks.experiments import launch
+from waggle_tasks.experiments.flags import variant_flags
+from waggle_tasks.experiments.studies import variants
 
-variant_runner.define('standard', 'runs/sensitivity')
+variant_flags.define('standard', 'runs/sensitivity')
 
 
 def main(argv: Sequence[str]) -> int:
   """Runs the variants and prints which cases change; 0 when it is done."""
   del argv
   moved = variants.VARIANTS
-  if (name := variant_runner.receiver()) is not None:
+  if (name := variant_flags.receiver()) is not None:
     moved = variants.of(name)
-  results = variant_runner.run('sensitivity', moved)
+  results = variant_flags.run('sensitivity', moved)
   print(variants.report(results))
   return 0
 

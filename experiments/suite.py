@@ -18,14 +18,11 @@ from absl import flags
 
 from waggle_tasks import errors, suites
 from waggle_tasks.agents import receivers
-from waggle_tasks.experiments import (
-  launch,
-  nulls,
-  provenance,
-  receiver_flag,
-  suite_tables,
-)
-from waggle_tasks.experiments.pages import suite_page
+from waggle_tasks.experiments import launch
+from waggle_tasks.experiments.flags import receiver_flag, workers_flag
+from waggle_tasks.experiments.pages import run_page, suite_page
+from waggle_tasks.experiments.record import nulls, provenance
+from waggle_tasks.experiments.results import suite_tables
 from waggle_tasks.protocol import checks
 
 ARGUMENTS = '[B]'
@@ -37,9 +34,7 @@ _SUITE = flags.DEFINE_string(
 )
 _CASE = flags.DEFINE_list('case', [], 'Only these cases, by name.')
 _RECEIVER = receiver_flag.define()
-_WORKERS = flags.DEFINE_integer(
-  'workers', None, 'How many processes; unset, one for each core.'
-)
+_WORKERS = workers_flag.define()
 _OUTPUT = flags.DEFINE_string(
   'output', None, 'Result folder; unset, runs/SUITE-RECEIVER, and the cases.'
 )
@@ -63,9 +58,9 @@ def main(argv: Sequence[str]) -> int:
   if note := nulls.check([c.scene for c in cases], _RECEIVER.value):
     print(note, file=sys.stderr)
   # Imported here: to compare results, no simulator is needed.
-  from waggle_tasks.experiments import suite_runner
+  from waggle_tasks.experiments.studies import suite_runner
 
-  workers = launch.worker_count('workers', _WORKERS.value)
+  workers = workers_flag.count(_WORKERS.value)
   stem = pathlib.Path(_SUITE.value).stem
   name = '-'.join([stem, _RECEIVER.value, *_CASE.value])
   folder = pathlib.Path(_OUTPUT.value or f'runs/{name}')
@@ -73,7 +68,9 @@ def main(argv: Sequence[str]) -> int:
     'suite', [f'--suite={_SUITE.value}', f'--receiver={_RECEIVER.value}']
   )
   began_s = time.monotonic()
-  rows = suite_runner.run(cases, _RECEIVER.value, folder, workers, command)
+  rows = suite_runner.run(
+    cases, _RECEIVER.value, folder, workers, command, run_page.leave
+  )
   wall_s = time.monotonic() - began_s
   page = suite_page.write(folder)
   print(suite_tables.report(rows))

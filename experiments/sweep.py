@@ -17,20 +17,16 @@ import sys
 from absl import flags
 
 from waggle_tasks.agents import receivers
-from waggle_tasks.experiments import (
-  envelope,
-  figures,
-  launch,
-  nulls,
-  provenance,
+from waggle_tasks.experiments import launch
+from waggle_tasks.experiments.flags import (
   receiver_flag,
-  records,
   scenario_flags,
-  sweep_cases,
-  sweep_output,
-  sweep_results,
-  sweep_tables,
+  workers_flag,
 )
+from waggle_tasks.experiments.pages import sweep_output
+from waggle_tasks.experiments.record import nulls, provenance
+from waggle_tasks.experiments.results import envelope, figures, sweep_tables
+from waggle_tasks.experiments.studies import sweep_cases, sweep_results
 from waggle_tasks.protocol import checks
 
 ARGUMENTS = '[FOLDER ...]'
@@ -44,9 +40,7 @@ _GRID = flags.DEFINE_multi_string(
 )  # fmt: skip
 _REPEATS = flags.DEFINE_integer('repeats', 1, 'Episodes of each cell.')
 _RECEIVER = receiver_flag.define()
-_WORKERS = flags.DEFINE_integer(
-  'workers', None, 'How many processes; unset, one for each core.'
-)
+_WORKERS = workers_flag.define()
 _SCHEDULER = flags.DEFINE_string(
   'scheduler', None, 'Fly on a Dask cluster: tcp://HOST:PORT of its scheduler,'
   ' or the JSON file that it wrote.',
@@ -78,9 +72,9 @@ def main(argv: Sequence[str]) -> int:
   if note := nulls.check([c.scene for c in cases], _RECEIVER.value):
     print(note, file=sys.stderr)
   # Imported here: to show results, no simulator is needed.
-  from waggle_tasks.experiments import cluster, pool, sweep_runner
+  from waggle_tasks.experiments.studies import cluster, pool, sweep_runner
 
-  workers = launch.worker_count('workers', _WORKERS.value)
+  workers = workers_flag.count(_WORKERS.value)
   engine: sweep_runner.Engine = functools.partial(pool.run, workers=workers)
   if _SCHEDULER.value is not None:
     place = cluster.find(_SCHEDULER.value)
@@ -102,7 +96,7 @@ def _summary(folders: Sequence[str]) -> int:
     row for name in folders for row in sweep_results.read(pathlib.Path(name))
   ]
   if _OUTPUT.value is not None:
-    records.check_writable(pathlib.Path(_OUTPUT.value))
+    folders.check_writable(pathlib.Path(_OUTPUT.value))
     return _show(pathlib.Path(_OUTPUT.value), rows)
   if len(folders) == 1:
     return _show(pathlib.Path(folders[0]), rows)

@@ -21,13 +21,7 @@ import numpy as np
 import pytest
 
 from waggle_tasks import registry
-from waggle_tasks.protocol import (
-  agreement,
-  flight,
-  gestures,
-  reference,
-  timing,
-)
+from waggle_tasks.protocol import agreement, flight, gestures, reference, timing
 
 # Tests run beside each other: threads of one would wait for those of others.
 cv2.setNumThreads(1)

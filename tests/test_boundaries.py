@@ -100,6 +100,78 @@ def test_modules_open_to_all_import_no_room_but_protocol(module: str) -> None:
   assert {n for n in names if not is_allowed(n, 'agents', agents)} == set()
 
 
+# Rooms of `experiments`, each with what it may import: those below it.
+LAUNCHERS = 'launchers'
+FLOORS = (
+  'machine', 'record', 'episodes', 'studies', 'results', 'pages', 'video',
+  'bench_parts', 'claim_parts', 'flags', LAUNCHERS,
+)  # fmt: skip
+NEVER = {
+  'machine': {'record'},
+  'record': {'episodes'},
+  'pages': {'episodes', 'video'},
+  'claim_parts': {'episodes', 'bench_parts', 'video'},
+}
+EXPERIMENTS = 'waggle_tasks.experiments.'
+
+
+def floor_of(name: str) -> str:
+  """The room of a dotted name inside of `experiments`."""
+  part = name.removeprefix(EXPERIMENTS).partition('.')[0]
+  return part if part in FLOORS else LAUNCHERS
+
+
+def runs_up(home: str, name: str) -> bool:
+  """Whether a file of a room of `experiments` must not import a name."""
+  if not name.startswith(EXPERIMENTS):
+    return False
+  there = floor_of(name)
+  if there == home:
+    return False
+  lower = FLOORS.index(there) < FLOORS.index(home)
+  return not lower or there in NEVER.get(home, ())
+
+
+@pytest.mark.parametrize(
+  'path',
+  [
+    pytest.param(path, id=str(path.relative_to(ROOT)))
+    for path in sorted((ROOT / 'experiments').rglob('*.py'))
+  ],
+)
+def test_no_import_of_the_experiments_runs_up(path: pathlib.Path) -> None:
+  home = path.relative_to(ROOT / 'experiments').parts[0]
+  home = home if home in FLOORS else LAUNCHERS
+  names = imported(ast.parse(path.read_text(encoding='utf-8')))
+  assert {name for name in names if runs_up(home, name)} == set()
+  absl = {name for name in names if name.startswith('absl')}
+  assert not absl or home in ('flags', LAUNCHERS)
+
+
+def test_every_room_has_a_floor() -> None:
+  folders = {
+    path.name
+    for path in (ROOT / 'experiments').iterdir()
+    if (path / '__init__.py').exists()
+  }
+  assert folders == {*FLOORS} - {LAUNCHERS}
+
+
+@pytest.mark.parametrize(
+  ('home', 'name'),
+  [
+    ('record', 'pages.run_page'),
+    ('studies', 'launch'),
+    ('results', 'pages.markup'),
+    ('pages', 'episodes.rollout'),
+    ('machine', 'record.folders'),
+    ('studies', 'flags.receiver_flag'),
+  ],
+)
+def test_an_import_that_runs_up_is_seen(home: str, name: str) -> None:
+  assert runs_up(home, EXPERIMENTS + name)
+
+
 @pytest.mark.parametrize(
   ('home', 'line'),
   [
@@ -186,13 +258,12 @@ def run_python(code: str) -> str:
   return child.stdout.strip()
 
 
-# Modules of `experiments` that fly, or draw what flies; all others read results
-# or fly nothing when they are imported.
-FLYING = frozenset({
-  'bench_parts', 'evaluator', 'identity', 'outside', 'reasons',
-  'replay_flight', 'rollout', 'shots', 'sight', 'spoilers', 'suite_case',
-  'suite_runner', 'sweep_flight', 'sweep_runner', 'tape', 'video.film',
-  'video.lens',
+# What needs a simulator only to measure, film or fly.
+SIMULATING = frozenset({'episodes', 'bench_parts'})
+SIMULATING_MODULES = frozenset({
+  'studies.replay_flight', 'studies.spoilers', 'studies.suite_case',
+  'studies.suite_runner', 'studies.sweep_flight', 'studies.sweep_runner',
+  'video.film', 'video.lens', 'video.shots',
 })  # fmt: skip
 IMPORT_ALL = """
 import importlib, sys
@@ -218,7 +289,8 @@ def test_what_flies_nothing_imports_no_simulator_and_no_gl() -> None:
   reading = [
     f'waggle_tasks.experiments.{name}'
     for name in names
-    if not {name, name.partition('.')[0]} & FLYING
+    if name.partition('.')[0] not in SIMULATING
+    if name not in SIMULATING_MODULES
   ]
   plain = [f'waggle_tasks.{name}' for name in ('scenarios', 'suites')]
   child = subprocess.run(

@@ -13,7 +13,7 @@ import pytest
 
 from waggle_tasks import registry
 from waggle_tasks.agents import config, observer_agent, receiver, receivers
-from waggle_tasks.experiments import boundary
+from waggle_tasks.experiments.episodes import boundary_worlds
 from waggle_tasks.protocol import frame
 from waggle_tasks.protocol.symbols import Symbol
 
@@ -22,9 +22,11 @@ SWAP = (0, 1)
 
 def run(
   name: str, scene: registry.Scenario
-) -> tuple[boundary.Events, boundary.Events, boundary.Events]:
+) -> tuple[
+  boundary_worlds.Events, boundary_worlds.Events, boundary_worlds.Events
+]:
   other = dataclasses.replace(scene, payload='110101', jitter_m=0.01, seed=1)
-  return boundary.experiment(scene, other, name, SWAP)
+  return boundary_worlds.experiment(scene, other, name, SWAP)
 
 
 def test_events_of_the_klt_receiver_come_from_its_own_images(
@@ -97,10 +99,10 @@ class Number(Leak):
 @pytest.fixture
 def leaky(
   monkeypatch: pytest.MonkeyPatch,
-) -> Callable[[type[Leak]], tuple[boundary.Events, ...]]:
+) -> Callable[[type[Leak]], tuple[boundary_worlds.Events, ...]]:
   """Runs the experiment, five frames of it, with such a receiver."""
 
-  def experiment(kind: type[Leak]) -> tuple[boundary.Events, ...]:
+  def experiment(kind: type[Leak]) -> tuple[boundary_worlds.Events, ...]:
     monkeypatch.setattr(kind, 'images', [], raising=False)
     monkeypatch.setitem(receivers.RECEIVERS, 'leaky', kind)
     scene = registry.find('broadcast', observers=2, duration_s=0.2)
@@ -110,7 +112,7 @@ def leaky(
 
 
 def test_receivers_that_know_their_own_images_pass(
-  leaky: Callable[[type[Leak]], tuple[boundary.Events, ...]],
+  leaky: Callable[[type[Leak]], tuple[boundary_worlds.Events, ...]],
 ) -> None:
   own, foreign, swapped = leaky(Leak)
   assert own[0] != own[1]
@@ -119,7 +121,7 @@ def test_receivers_that_know_their_own_images_pass(
 
 
 def test_a_receiver_that_sees_its_neighbours_image_is_found(
-  leaky: Callable[[type[Leak]], tuple[boundary.Events, ...]],
+  leaky: Callable[[type[Leak]], tuple[boundary_worlds.Events, ...]],
 ) -> None:
   own, foreign, _ = leaky(Neighbour)
   assert foreign[0] != own[0]
@@ -127,7 +129,7 @@ def test_a_receiver_that_sees_its_neighbours_image_is_found(
 
 
 def test_a_receiver_that_is_told_where_it_is_is_found(
-  leaky: Callable[[type[Leak]], tuple[boundary.Events, ...]],
+  leaky: Callable[[type[Leak]], tuple[boundary_worlds.Events, ...]],
   monkeypatch: pytest.MonkeyPatch,
 ) -> None:
   step = observer_agent.ObserverAgent.step
@@ -146,7 +148,7 @@ def test_a_receiver_that_is_told_where_it_is_is_found(
 
 
 def test_a_receiver_that_knows_which_one_it_is_is_found(
-  leaky: Callable[[type[Leak]], tuple[boundary.Events, ...]],
+  leaky: Callable[[type[Leak]], tuple[boundary_worlds.Events, ...]],
 ) -> None:
   own, _, swapped = leaky(Number)
   assert swapped != own[::-1]

@@ -14,8 +14,9 @@ import numpy as np
 import pytest
 
 from waggle_tasks import registry, scenario
-from waggle_tasks.experiments import evaluator, records
-from waggle_tasks.experiments import rollout as rollout_lib
+from waggle_tasks.experiments.episodes import evaluator
+from waggle_tasks.experiments.episodes import rollout as rollout_lib
+from waggle_tasks.experiments.record import encoding, writer
 from waggle_tasks.protocol import flight
 
 Waggle = Callable[..., subprocess.CompletedProcess[str]]
@@ -128,8 +129,8 @@ def test_the_run_folder_holds_everything_and_nothing_is_beside_it(
   assert [path.name for path in (home / 'runs').iterdir()] == [run.folder.name]
   config = run.json('config.json')
   assert config['receiver'] == 'klt'
-  expected = records.config(scenario.Scenario(), 'klt')
-  assert config == json.loads(records.dumps(expected))
+  expected = writer.config(scenario.Scenario(), 'klt')
+  assert config == json.loads(encoding.dumps(expected))
   origin = run.json('provenance.json')
   assert origin['command'] == 'waggle broadcast'
   assert origin['versions']['dm-control'] == '1.0.50'
@@ -170,7 +171,7 @@ def test_nobody_came_near_another(rollout: rollout_lib.Rollout) -> None:
 def test_another_process_writes_the_same_bytes(
   run: Run, rollout: rollout_lib.Rollout
 ) -> None:
-  lines = ''.join(f'{line}\n' for line in records.event_lines(rollout))
+  lines = ''.join(f'{line}\n' for line in writer.event_lines(rollout))
   assert (run.folder / 'events.jsonl').read_bytes() == lines.encode()
 
 
@@ -182,7 +183,7 @@ def test_the_same_seed_repeats_byte_for_byte_in_one_process(
   for _ in range(2):
     played = rollout_lib.run(scene, 'klt')
     assert evaluator.evaluate(scene, played).passed
-    logs.append('\n'.join(records.event_lines(played)))
+    logs.append('\n'.join(writer.event_lines(played)))
   assert logs[0] == logs[1]
 
 
@@ -214,7 +215,7 @@ def test_flags_make_another_dance_and_its_folder(
   scene = registry.find(
     'broadcast', observers=1, payload='100010', jitter_m=0.01, seed=3, **short
   )
-  expected = json.loads(records.dumps(records.config(scene, 'klt')))
+  expected = json.loads(encoding.dumps(writer.config(scene, 'klt')))
   assert made.json('config.json') == expected
   command = made.json('provenance.json')['command']
   assert '--payload=100010' in command

@@ -6,7 +6,7 @@ import pytest
 
 from waggle_tasks import scenario
 from waggle_tasks.arenas import layouts
-from waggle_tasks.experiments import changes, records, scenario_fields
+from waggle_tasks.experiments.record import changes, scenario_fields, writer
 from waggle_tasks.experiments.video import film, panel
 from waggle_tasks.protocol import gestures
 from waggle_tasks.protocol.symbols import Symbol
@@ -59,7 +59,7 @@ def test_what_is_said_makes_the_same_scenario() -> None:
 
 def test_an_archived_configuration_says_the_same() -> None:
   scene = made(noise_sigma=5.0, gap_s=2.5, half_width_m=0.2)
-  fields = records.config(scene, 'klt')['scenario']
+  fields = writer.config(scene, 'klt')['scenario']
   assert changes.among(fields) == changes.of(scene)
 
 

@@ -9,7 +9,8 @@ import pytest
 
 from waggle_tasks import registry, scenario, suites
 from waggle_tasks.entities import performer
-from waggle_tasks.experiments import evaluator, rollout, story
+from waggle_tasks.experiments.episodes import evaluator, rollout
+from waggle_tasks.experiments.record import story
 from waggle_tasks.protocol import (
   clock,
   decoys,

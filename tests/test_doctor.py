@@ -14,7 +14,8 @@ from packaging import requirements
 import pytest
 
 from waggle_tasks import runtime
-from waggle_tasks.experiments import dependencies, gl, health, provenance
+from waggle_tasks.experiments.machine import dependencies, gl, health
+from waggle_tasks.experiments.record import provenance
 
 DOCTOR = 'from waggle_tasks.experiments import main; sys.exit(main.main())'
 

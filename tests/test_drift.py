@@ -8,7 +8,7 @@ import pytest
 
 from waggle_tasks import registry, scenario, suites
 from waggle_tasks.arenas import layouts
-from waggle_tasks.experiments import evaluator, rollout
+from waggle_tasks.experiments.episodes import evaluator, rollout
 from waggle_tasks.protocol import flight, reference, timing
 from waggle_tasks.tasks import drift
 

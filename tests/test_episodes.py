@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 
 from waggle_tasks import registry, scenario
-from waggle_tasks.experiments import evaluator, verdicts
-from waggle_tasks.experiments import rollout as rollout_lib
+from waggle_tasks.experiments.episodes import evaluator
+from waggle_tasks.experiments.episodes import rollout as rollout_lib
+from waggle_tasks.experiments.record import verdicts
 
 PAYLOADS = ('000010', '000110', '001010', '100010')
 Played = tuple[scenario.Scenario, rollout_lib.Rollout, verdicts.Verdict]

@@ -10,9 +10,10 @@ import pytest
 
 from waggle_tasks import scenario
 from waggle_tasks.agents import observer_agent, receiver, recogniser
-from waggle_tasks.experiments import evaluator, verdicts
-from waggle_tasks.experiments import rollout as rollout_lib
-from waggle_tasks.experiments import traces as traces_lib
+from waggle_tasks.experiments.episodes import evaluator
+from waggle_tasks.experiments.episodes import rollout as rollout_lib
+from waggle_tasks.experiments.record import traces as traces_lib
+from waggle_tasks.experiments.record import verdicts
 from waggle_tasks.protocol import flight, frame, payload, schedule, timing
 from waggle_tasks.protocol.symbols import Symbol
 from waggle_tasks.tasks import safety

@@ -6,7 +6,7 @@ import pathlib
 
 import pytest
 
-from waggle_tasks.experiments import files
+from waggle_tasks.experiments.machine import files
 
 CONTEXT = multiprocessing.get_context('spawn')
 

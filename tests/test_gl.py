@@ -12,7 +12,9 @@ from OpenGL import GL
 import pytest
 
 from waggle_tasks import registry
-from waggle_tasks.experiments import gl, provenance, rollout, tape
+from waggle_tasks.experiments.episodes import rollout, tape
+from waggle_tasks.experiments.machine import gl
+from waggle_tasks.experiments.record import provenance
 
 APT = 'apt-get install libegl1 libgl1 libgl1-mesa-dri'
 
@@ -148,7 +150,7 @@ def test_osmesa_has_its_name(monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.skip(f'needs OSMesa: {there.error}')
   code = (
     'from waggle_tasks import registry\n'
-    'from waggle_tasks.experiments import rollout\n'
+    'from waggle_tasks.experiments.episodes import rollout\n'
     "scene = registry.find('no_send', observers=1, duration_s=0.2)\n"
     "print(rollout.run(scene, 'klt').renderer)"
   )

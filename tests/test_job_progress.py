@@ -7,7 +7,7 @@ import warnings
 
 import pytest
 
-from waggle_tasks.experiments import job_progress, pool
+from waggle_tasks.experiments.studies import job_progress, pool
 
 
 @pytest.mark.parametrize('frames', [1, 3, 249, 2690, 15_000])

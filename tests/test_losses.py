@@ -7,7 +7,8 @@ import pytest
 
 from waggle_tasks import scenario
 from waggle_tasks.agents import receivers
-from waggle_tasks.experiments import spoilers, tape
+from waggle_tasks.experiments.episodes import tape
+from waggle_tasks.experiments.studies import spoilers
 
 Stream = tape.Stream
 # With so many motions hidden, a frame is left.

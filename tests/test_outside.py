@@ -15,13 +15,16 @@ import pytest
 
 from waggle_tasks import registry, scenario
 from waggle_tasks.agents import receivers
-from waggle_tasks.experiments import identity as identity_lib
-from waggle_tasks.experiments import (
-  outside,
+from waggle_tasks.experiments.episodes import identity as identity_lib
+from waggle_tasks.experiments.episodes import outside
+from waggle_tasks.experiments.record import (
+  encoding,
   provenance,
-  records,
   scenario_fields,
   source_files,
+  writer,
+)
+from waggle_tasks.experiments.studies import (
   suite_runner,
   sweep_cases,
   sweep_runner,
@@ -194,7 +197,7 @@ def test_a_layout_counts_with_its_source_its_numbers_and_its_poses(
   seen.add(identity('klt', scene(ROWS, 1.2)))
   seen.add(identity('klt', scene(ROWS.replace('0.5 * s', '0.6 * s'))))
   assert len(seen) == 4
-  held = json.loads(records.dumps(records.config(plain, 'klt')))
+  held = json.loads(encoding.dumps(writer.config(plain, 'klt')))
   assert held['scenario']['layout']['Rows']['radius_m'] == 1.3
 
 

@@ -12,7 +12,8 @@ import numpy as np
 import pytest
 
 from waggle_tasks.agents import receiver, receivers
-from waggle_tasks.experiments import ablations, archive, nulls, variants
+from waggle_tasks.experiments.record import archive, nulls
+from waggle_tasks.experiments.studies import ablations, variants
 
 Waggle = Callable[..., subprocess.CompletedProcess[str]]
 ROOT = pathlib.Path(__file__).parents[1]

@@ -7,7 +7,8 @@ import re
 
 import pytest
 
-from waggle_tasks.experiments import main, nulls
+from waggle_tasks.experiments import main
+from waggle_tasks.experiments.record import nulls
 from waggle_tasks.protocol import limits
 
 TEXT = (pathlib.Path(__file__).parents[1] / 'README.md').read_text('utf-8')

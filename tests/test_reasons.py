@@ -14,8 +14,9 @@ import pytest
 from waggle_tasks import registry, scenario
 from waggle_tasks.agents import observer_agent
 from waggle_tasks.arenas import layouts
-from waggle_tasks.experiments import episode, evaluator, nulls, verdicts
-from waggle_tasks.experiments import rollout as rollout_lib
+from waggle_tasks.experiments.episodes import evaluator
+from waggle_tasks.experiments.episodes import rollout as rollout_lib
+from waggle_tasks.experiments.record import episode, nulls, verdicts
 from waggle_tasks.protocol import timing
 
 Waggle = Callable[..., subprocess.CompletedProcess[str]]

@@ -16,8 +16,9 @@ import pytest
 from waggle_tasks import scenario
 from waggle_tasks.agents import observer_agent, receiver, recogniser
 from waggle_tasks.arenas import layouts
-from waggle_tasks.experiments import files, records
-from waggle_tasks.experiments import rollout as rollout_lib
+from waggle_tasks.experiments.episodes import rollout as rollout_lib
+from waggle_tasks.experiments.machine import files
+from waggle_tasks.experiments.record import encoding, folders, writer
 from waggle_tasks.protocol import frame, payload
 from waggle_tasks.protocol.symbols import Symbol
 from waggle_tasks.tasks import safety
@@ -30,7 +31,7 @@ def left_in(folder: pathlib.Path) -> list[str]:
 
 def test_a_folder_appears_once_it_is_complete(tmp_path: pathlib.Path) -> None:
   path = tmp_path / 'run'
-  with records.new_folder(path) as draft:
+  with folders.new_folder(path) as draft:
     assert draft.is_dir()
     (draft / 'a.txt').write_text('a')
     assert not path.exists()
@@ -40,7 +41,7 @@ def test_a_folder_appears_once_it_is_complete(tmp_path: pathlib.Path) -> None:
 
 def test_its_parents_are_made(tmp_path: pathlib.Path) -> None:
   path = tmp_path / 'of' / 'mine' / 'run'
-  with records.new_folder(path):
+  with folders.new_folder(path):
     pass
   assert path.is_dir()
 
@@ -51,7 +52,7 @@ def test_an_interrupted_run_leaves_nothing(
   error: type[BaseException], path: str, tmp_path: pathlib.Path
 ) -> None:
   def work() -> None:
-    with records.new_folder(tmp_path / path) as draft:
+    with folders.new_folder(tmp_path / path) as draft:
       (draft / 'half.txt').write_text('ha')
       raise error
 
@@ -77,8 +78,8 @@ def test_what_exists_is_never_overwritten(
       path.symlink_to(tmp_path / 'nowhere')
   before = left_in(tmp_path)
   with (
-    pytest.raises(records.OutputError) as caught,
-    records.new_folder(path),
+    pytest.raises(folders.OutputError) as caught,
+    folders.new_folder(path),
   ):
     raise AssertionError('the work must not begin')
   assert str(caught.value) == f'`output` must not exist yet: {path} does'
@@ -91,12 +92,12 @@ def test_what_appears_meanwhile_is_not_overwritten_either(
   path = tmp_path / 'run'
 
   def work() -> None:
-    with records.new_folder(path) as draft:
+    with folders.new_folder(path) as draft:
       (draft / 'new.txt').write_text('new')
       path.mkdir()
       (path / 'mine.txt').write_text('mine')
 
-  with pytest.raises(records.OutputError, match='`output` must be writable'):
+  with pytest.raises(folders.OutputError, match='`output` must be writable'):
     work()
   assert left_in(tmp_path) == ['run', 'run/mine.txt']
 
@@ -108,8 +109,8 @@ def test_a_place_that_cannot_be_written_is_named_before_the_work(
   path: str,
 ) -> None:
   with (
-    pytest.raises(records.OutputError) as caught,
-    records.new_folder(pathlib.Path(path)),
+    pytest.raises(folders.OutputError) as caught,
+    folders.new_folder(pathlib.Path(path)),
   ):
     raise AssertionError('the work must not begin')
   assert str(caught.value).startswith('`output` must be writable: ')
@@ -121,8 +122,8 @@ def test_a_folder_without_permission_is_named(tmp_path: pathlib.Path) -> None:
   tmp_path.chmod(0o500)
   error = f'`output` must be writable: {tmp_path} is not'
   with (
-    pytest.raises(records.OutputError, match=error),
-    records.new_folder(tmp_path / 'run'),
+    pytest.raises(folders.OutputError, match=error),
+    folders.new_folder(tmp_path / 'run'),
   ):
     raise AssertionError('the work must not begin')
 
@@ -130,9 +131,9 @@ def test_a_folder_without_permission_is_named(tmp_path: pathlib.Path) -> None:
 def test_two_runs_beside_each_other_do_not_meet(
   tmp_path: pathlib.Path,
 ) -> None:
-  with records.new_folder(tmp_path / 'a') as first:
+  with folders.new_folder(tmp_path / 'a') as first:
     (first / 'a.txt').write_text('a')
-    with records.new_folder(tmp_path / 'b') as second:
+    with folders.new_folder(tmp_path / 'b') as second:
       (second / 'b.txt').write_text('b')
   assert left_in(tmp_path) == ['a', 'a/a.txt', 'b', 'b/b.txt']
 
@@ -143,15 +144,15 @@ def test_a_run_that_was_killed_does_not_block_its_name(
   path = tmp_path / 'run'
   work = f"""
 import os, pathlib
-from waggle_tasks.experiments import files, records
-with records.new_folder(pathlib.Path({str(path)!r})) as draft:
+from waggle_tasks.experiments.record import folders
+with folders.new_folder(pathlib.Path({str(path)!r})) as draft:
   (draft / 'half.txt').write_text('ha')
   os.kill(os.getpid(), 9)
 """
   child = subprocess.run([sys.executable, '-c', work], check=False)
   assert child.returncode == -signal.SIGKILL
   assert len(left_in(tmp_path)) == 3
-  with records.new_folder(path) as draft:
+  with folders.new_folder(path) as draft:
     (draft / 'whole.txt').write_text('whole')
   assert left_in(tmp_path) == ['run', 'run/whole.txt']
 
@@ -163,11 +164,11 @@ def test_a_name_that_another_run_is_writing_is_refused_before_the_work(
   error = f'`output` must not be in use: another run is writing {path}'
 
   def second() -> None:
-    with records.new_folder(path):
+    with folders.new_folder(path):
       raise AssertionError('the work must not begin')
 
-  with records.new_folder(path) as draft:
-    with pytest.raises(records.OutputError, match=re.escape(error)):
+  with folders.new_folder(path) as draft:
+    with pytest.raises(folders.OutputError, match=re.escape(error)):
       second()
     (draft / 'mine.txt').write_text('mine')
   assert left_in(tmp_path) == ['run', 'run/mine.txt']
@@ -178,11 +179,11 @@ def test_the_next_free_folder_is_counted(
 ) -> None:
   monkeypatch.chdir(tmp_path)
   for number in (1, 3, 4):
-    with records.next_folder('broadcast') as (draft, path):
+    with folders.next_folder('broadcast') as (draft, path):
       (draft / 'a.txt').write_text('a')
     assert path == pathlib.Path('runs', f'broadcast-{number}')
     (tmp_path / 'runs' / 'broadcast-2').touch()
-  with records.next_folder('suite') as (_, path):
+  with folders.next_folder('suite') as (_, path):
     assert path == pathlib.Path('runs/suite-1')
 
 
@@ -192,7 +193,7 @@ def test_runs_that_begin_together_get_folders_of_their_own(
   monkeypatch.chdir(tmp_path)
   with contextlib.ExitStack() as stack:
     begun = [
-      stack.enter_context(records.next_folder('broadcast')) for _ in range(4)
+      stack.enter_context(folders.next_folder('broadcast')) for _ in range(4)
     ]
     for number, (draft, path) in enumerate(begun, 1):
       assert path == pathlib.Path('runs', f'broadcast-{number}')
@@ -207,7 +208,7 @@ def test_an_interrupted_run_leaves_the_next_number_free(
   monkeypatch.chdir(tmp_path)
 
   def work() -> None:
-    with records.next_folder('broadcast'):
+    with folders.next_folder('broadcast'):
       raise KeyboardInterrupt
 
   with pytest.raises(KeyboardInterrupt):
@@ -218,8 +219,8 @@ def test_an_interrupted_run_leaves_the_next_number_free(
 @pytest.mark.parametrize('path', ['new/..', '..', '/'])
 def test_what_is_no_name_is_refused_before_the_work(path: str) -> None:
   with (
-    pytest.raises(records.OutputError, match='`output` must end in a name'),
-    records.new_folder(pathlib.Path(path)),
+    pytest.raises(folders.OutputError, match='`output` must end in a name'),
+    folders.new_folder(pathlib.Path(path)),
   ):
     raise AssertionError('the work must not begin')
 
@@ -255,7 +256,7 @@ def rollout() -> rollout_lib.Rollout:
 
 
 def test_events_are_lines_of_json_in_order_of_time() -> None:
-  lines = [json.loads(line) for line in records.event_lines(rollout())]
+  lines = [json.loads(line) for line in writer.event_lines(rollout())]
   assert [(line['time_s'], line['observer']) for line in lines] == [
     (3.0, 'observer_1'),
     (3.0, 'observer_2'),
@@ -281,20 +282,20 @@ def test_events_are_lines_of_json_in_order_of_time() -> None:
 
 
 def test_event_lines_repeat_byte_for_byte() -> None:
-  assert [*records.event_lines(rollout())] == [*records.event_lines(rollout())]
+  assert [*writer.event_lines(rollout())] == [*writer.event_lines(rollout())]
 
 
 @pytest.mark.parametrize('value', [math.nan, math.inf, np.array([math.nan])])
 def test_what_json_cannot_hold_is_refused(value: object) -> None:
   with pytest.raises(ValueError, match='JSON compliant'):
-    records.dumps({'value': value})
+    encoding.dumps({'value': value})
   with pytest.raises(ValueError, match='JSON compliant'):
-    records.pretty({'value': value})
+    encoding.pretty({'value': value})
 
 
 def test_a_configuration_holds_every_choice() -> None:
   scene = scenario.Scenario(seed=7, jitter_m=0.01)
-  held = json.loads(records.dumps(records.config(scene, 'klt')))
+  held = json.loads(encoding.dumps(writer.config(scene, 'klt')))
   assert held['receiver'] == 'klt'
   fields = held['scenario']
   assert {*fields} == {*scenario.Scenario.__dataclass_fields__}
@@ -309,7 +310,7 @@ def test_a_configuration_holds_every_choice() -> None:
 
 def test_a_layout_of_ones_own_is_written_with_its_name() -> None:
   scene = scenario.Scenario(layout=layouts.Line(1.5, 0.7))
-  held = records.config(scene, 'klt')['scenario']['layout']
+  held = writer.config(scene, 'klt')['scenario']['layout']
   assert held == {'Line': {'separation_m': 1.5, 'spacing_m': 0.7}}
 
 
@@ -319,13 +320,13 @@ def test_the_name_of_a_file_is_kept_until_it_is_written(
   path = tmp_path / 'all.json'
 
   def second() -> None:
-    with records.claimed(path, 'json'):
+    with folders.claimed(path, 'json'):
       raise AssertionError('the work must not begin')
 
-  with records.claimed(path, 'json'):
-    with pytest.raises(records.OutputError, match='`json` must not be in use'):
+  with folders.claimed(path, 'json'):
+    with pytest.raises(folders.OutputError, match='`json` must not be in use'):
       second()
     files.put(path, '{}')
-  with pytest.raises(records.OutputError, match='`json` must be a new file'):
+  with pytest.raises(folders.OutputError, match='`json` must be a new file'):
     second()
   assert left_in(tmp_path) == ['all.json']

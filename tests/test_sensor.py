@@ -9,7 +9,7 @@ import pytest
 
 from waggle_tasks import scenario, sensor, suites
 from waggle_tasks.entities import feed
-from waggle_tasks.experiments import rollout
+from waggle_tasks.experiments.episodes import rollout
 
 Fixture = Callable[..., object]
 Load = Callable[..., composer.Environment]

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from waggle_tasks.agents import receivers
-from waggle_tasks.experiments import spoilers, tape
+from waggle_tasks.experiments.episodes import tape
+from waggle_tasks.experiments.studies import spoilers
 from waggle_tasks.protocol import agreement
 
 WANTED = ['NULL', 'START', 'NULL', '0', 'NULL']

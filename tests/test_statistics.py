@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 import pytest
 
-from waggle_tasks.experiments import statistics
+from waggle_tasks.experiments.results import intervals
 
 # Of the paper's Table 2: correct messages and receivers of each broadcast.
 CORRECT = (3, 3, 3, 3, 1, 2, 4, 3, 3, 0, 3, 3, 1, 3, 3, 3, 3)
@@ -29,14 +29,14 @@ EXPOSURES = (3, 3, 3, 3, 1, 2, 4, 5, 3, 3, 3, 3, 3, 3, 3, 3, 5)
 def test_the_exact_interval_of_a_proportion(
   successes: int, trials: int, low: float, high: float
 ) -> None:
-  interval = statistics.clopper_pearson(successes, trials)
+  interval = intervals.clopper_pearson(successes, trials)
   assert interval == pytest.approx((low, high), abs=5e-5)
 
 
 @pytest.mark.parametrize('successes', range(8))
 def test_failures_and_successes_are_treated_alike(successes: int) -> None:
-  low, high = statistics.clopper_pearson(successes, 7)
-  other = statistics.clopper_pearson(7 - successes, 7)
+  low, high = intervals.clopper_pearson(successes, 7)
+  other = intervals.clopper_pearson(7 - successes, 7)
   assert (1 - high, 1 - low) == pytest.approx(other, abs=1e-9)
   assert low <= successes / 7 <= high
 
@@ -57,15 +57,13 @@ def test_failures_and_successes_are_treated_alike(successes: int) -> None:
 def test_the_one_sided_upper_limit_of_a_proportion(
   events: int, trials: int, limit: float
 ) -> None:
-  assert statistics.upper_limit(events, trials) == pytest.approx(
-    limit, abs=1e-5
-  )
+  assert intervals.upper_limit(events, trials) == pytest.approx(limit, abs=1e-5)
 
 
 def test_the_bootstrap_repeats_bit_for_bit() -> None:
-  first = statistics.bootstrap_by_broadcast(CORRECT, EXPOSURES)
+  first = intervals.bootstrap_by_broadcast(CORRECT, EXPOSURES)
   np.random.random_sample()  # Its draws are its own, whatever others drew.
-  assert statistics.bootstrap_by_broadcast(CORRECT, EXPOSURES) == first
+  assert intervals.bootstrap_by_broadcast(CORRECT, EXPOSURES) == first
   low, high = first
   assert low < 44 / 53 < high
 
@@ -74,13 +72,13 @@ def test_the_bootstrap_draws_whole_broadcasts() -> None:
   # Two broadcasts of 50: all of one are right, none of the other. Whole, they
   # give 0, 1/2 or 1, so the interval is everything; receiver by receiver the
   # share of 100 would stay within 0.4 to 0.6.
-  assert statistics.bootstrap_by_broadcast([50, 0], [50, 50]) == (0.0, 1.0)
+  assert intervals.bootstrap_by_broadcast([50, 0], [50, 50]) == (0.0, 1.0)
 
 
 def test_the_bootstrap_weighs_a_broadcast_by_its_receivers() -> None:
   # The mean of the broadcasts' shares would be 1/2, and high above it.
   correct, exposures = [1] * 10 + [0] * 10, [1] * 10 + [9] * 10
-  low, high = statistics.bootstrap_by_broadcast(correct, exposures)
+  low, high = intervals.bootstrap_by_broadcast(correct, exposures)
   assert low < 0.1 < high < 0.35
 
 
@@ -90,7 +88,7 @@ def test_the_bootstrap_weighs_a_broadcast_by_its_receivers() -> None:
 def test_the_bootstrap_of_equal_broadcasts_has_no_width(
   correct: Sequence[int], share: float
 ) -> None:
-  interval = statistics.bootstrap_by_broadcast(correct, [3, 1, 2])
+  interval = intervals.bootstrap_by_broadcast(correct, [3, 1, 2])
   assert interval == (share, share)
 
 
@@ -100,7 +98,7 @@ def test_the_bootstrap_matches_the_exact_binomial_for_single_receivers() -> (
   # 100 broadcasts of one receiver: shares are binomial(100, 0.5) / 100, whose
   # 2.5 % and 97.5 % quantiles are 0.40 and 0.60.
   correct = [0, 1] * 50
-  interval = statistics.bootstrap_by_broadcast(correct, [1] * 100)
+  interval = intervals.bootstrap_by_broadcast(correct, [1] * 100)
   assert interval == pytest.approx((0.4, 0.6), abs=0.011)
 
 
@@ -116,5 +114,5 @@ def test_the_bootstrap_matches_the_exact_binomial_for_single_receivers() -> (
   ],
 )
 def test_the_exact_p_value_of_pairs(only_a: int, only_b: int, p: float) -> None:
-  assert statistics.mcnemar(only_a, only_b) == pytest.approx(p)
-  assert statistics.mcnemar(only_b, only_a) == pytest.approx(p)
+  assert intervals.mcnemar(only_a, only_b) == pytest.approx(p)
+  assert intervals.mcnemar(only_b, only_a) == pytest.approx(p)

@@ -11,7 +11,7 @@ import pytest
 
 from waggle_tasks import appearance, scenario
 from waggle_tasks.agents import receiver, receivers
-from waggle_tasks.experiments import evaluator, rollout
+from waggle_tasks.experiments.episodes import evaluator, rollout
 from waggle_tasks.protocol import (
   agreement,
   frame,

@@ -8,7 +8,6 @@ from typing import Any
 import tqdm
 
 from waggle_tasks import registry, suites
-from waggle_tasks.experiments import gl, provenance
 from waggle_tasks.experiments.bench_parts import (
   events,
   findings,
@@ -17,6 +16,8 @@ from waggle_tasks.experiments.bench_parts import (
   sameness,
   sections,
 )
+from waggle_tasks.experiments.machine import gl
+from waggle_tasks.experiments.record import provenance
 from waggle_tasks.protocol import checks
 
 

@@ -7,8 +7,10 @@ import cv2
 
 from waggle_tasks import suites
 from waggle_tasks.entities import optics
-from waggle_tasks.experiments import job_progress, pool, records, rollout
 from waggle_tasks.experiments.bench_parts import loops
+from waggle_tasks.experiments.episodes import rollout
+from waggle_tasks.experiments.record import writer
+from waggle_tasks.experiments.studies import job_progress, pool
 from waggle_tasks.protocol import timing
 
 
@@ -81,4 +83,4 @@ def _fly(
   cv2.setNumThreads(1)  # Workers share the cores.
   scene = dataclasses.replace(case.scene, camera=camera)
   watchers = [job_progress.reporter(report)]
-  return list(records.event_lines(rollout.run(scene, loops.RECEIVER, watchers)))
+  return list(writer.event_lines(rollout.run(scene, loops.RECEIVER, watchers)))

@@ -3,8 +3,8 @@
 from collections.abc import Sequence
 
 from waggle_tasks.entities import renderer
-from waggle_tasks.experiments import table
 from waggle_tasks.experiments.bench_parts import events, sameness
+from waggle_tasks.experiments.machine import table
 
 _PIXELS = renderer.WIDTH * renderer.HEIGHT
 

@@ -9,8 +9,9 @@ import dm_env
 
 from waggle_tasks import scenario
 from waggle_tasks.agents import observer_agent
-from waggle_tasks.experiments import episode, rollout
 from waggle_tasks.experiments.bench_parts import processes
+from waggle_tasks.experiments.episodes import rollout
+from waggle_tasks.experiments.record import episode
 from waggle_tasks.protocol import timing
 
 RECEIVER = 'klt'

@@ -8,13 +8,13 @@ from collections.abc import Callable, Mapping, Sequence
 import statistics
 from typing import Any
 
-from waggle_tasks.experiments import table
 from waggle_tasks.experiments.bench_parts import (
   cameras,
   loops,
   sections,
   stages,
 )
+from waggle_tasks.experiments.machine import table
 
 Ratios = dict[str, float]
 _FEW, _MANY = 2, sections.OBSERVERS[-1]

@@ -17,12 +17,7 @@ from dm_control.composer.observation import updater
 import dm_env
 
 from waggle_tasks import scenario
-from waggle_tasks.agents import (
-  navigator,
-  observer_agent,
-  provenance,
-  receivers,
-)
+from waggle_tasks.agents import navigator, observer_agent, provenance, receivers
 from waggle_tasks.entities import renderer
 from waggle_tasks.experiments.bench_parts import loops, processes
 from waggle_tasks.protocol import timing

@@ -7,8 +7,8 @@ from collections.abc import Callable, Container, Iterator
 import re
 
 from waggle_tasks import suites
-from waggle_tasks.experiments import suite_tables, sweep_tables
 from waggle_tasks.experiments.claim_parts import documents, finding
+from waggle_tasks.experiments.results import suite_tables, sweep_tables
 
 _RIGHT = re.compile(r'^right: (\d+)/(\d+) exposures')
 _EVENTS = re.compile(r'^([a-z ]+): (\d+) in (\d+) exposures')

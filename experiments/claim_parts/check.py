@@ -8,7 +8,6 @@ import sys
 import tempfile
 
 from waggle_tasks import errors
-from waggle_tasks.experiments import sweep_results
 from waggle_tasks.experiments.claim_parts import (
   arithmetic,
   book,
@@ -16,6 +15,7 @@ from waggle_tasks.experiments.claim_parts import (
   documents,
   finding,
 )
+from waggle_tasks.experiments.studies import sweep_results
 
 # Launchers that leave a folder, and so are told where.
 _LEAVES = ('broadcast', 'sweep', 'suite', 'sensitivity', 'ablate')

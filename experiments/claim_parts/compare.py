@@ -5,8 +5,8 @@ import itertools
 import re
 from typing import Any
 
-from waggle_tasks.experiments import envelope, heat, sweep_tables
 from waggle_tasks.experiments.claim_parts import documents, finding
+from waggle_tasks.experiments.results import envelope, heat, sweep_tables
 
 _UNLIKE = 'rows unlike the paper'
 _COUNTED = re.compile(r'^(right|[a-z ]+): (\d+)(?:/| in )(\d+) exposures')

@@ -6,10 +6,11 @@ import json
 import pathlib
 from typing import Any
 
-from waggle_tasks.experiments import files
+from waggle_tasks.experiments.machine import files
 from waggle_tasks.experiments.pages import markup
+from waggle_tasks.experiments.record import archive
 
-NAME = 'index.html'
+NAME = archive.PAGE
 
 tag = markup.tag
 

@@ -5,8 +5,8 @@ import itertools
 import numpy as np
 
 from waggle_tasks.agents import observer_agent
-from waggle_tasks.experiments import archive
 from waggle_tasks.experiments.pages import markup
+from waggle_tasks.experiments.record import archive
 from waggle_tasks.tasks import safety
 
 _PAIRS = 10  # The nearest ones; many observers have many pairs.

@@ -6,9 +6,9 @@ import numpy as np
 
 from waggle_tasks.agents import config as config_lib
 from waggle_tasks.agents import description, receiver, views
-from waggle_tasks.experiments import palette
-from waggle_tasks.experiments import traces as traces_lib
 from waggle_tasks.experiments.pages import markup, plot
+from waggle_tasks.experiments.record import traces as traces_lib
+from waggle_tasks.experiments.results import palette
 from waggle_tasks.protocol import gestures
 from waggle_tasks.protocol.symbols import MOTIONS, Symbol
 

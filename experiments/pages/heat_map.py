@@ -2,8 +2,8 @@
 
 from collections.abc import Sequence
 
-from waggle_tasks.experiments import envelope, heat, palette
 from waggle_tasks.experiments.pages import markup, plot
+from waggle_tasks.experiments.results import envelope, heat, palette
 
 _CELL, _HEIGHT = 58, 30  # Units of the SVG.
 _LEFT, _TOP, _BELOW = 92, 8, 46

@@ -3,8 +3,6 @@
 from collections.abc import Mapping
 
 from waggle_tasks.agents import description, outsiders, receivers
-from waggle_tasks.experiments import archive
-from waggle_tasks.experiments import traces as traces_lib
 from waggle_tasks.experiments.pages import (
   document,
   gesture_plots,
@@ -12,6 +10,8 @@ from waggle_tasks.experiments.pages import (
   signals,
   timelines,
 )
+from waggle_tasks.experiments.record import archive
+from waggle_tasks.experiments.record import traces as traces_lib
 
 tag = markup.tag
 

@@ -8,8 +8,9 @@ import json
 
 import numpy as np
 
-from waggle_tasks.experiments import archive, palette
 from waggle_tasks.experiments.pages import flights, markup, plot
+from waggle_tasks.experiments.record import archive
+from waggle_tasks.experiments.results import palette
 from waggle_tasks.protocol import timing
 
 _SIDE = 460.0

@@ -6,10 +6,10 @@ A static file beside the data that it shows; `write` makes it again from them.
 from collections.abc import Mapping, Sequence
 import math
 import pathlib
+import sys
 from typing import Any
 
 from waggle_tasks.agents import receivers
-from waggle_tasks.experiments import archive, changes, palette, story
 from waggle_tasks.experiments.pages import (
   document,
   flights,
@@ -18,6 +18,8 @@ from waggle_tasks.experiments.pages import (
   room,
   timelines,
 )
+from waggle_tasks.experiments.record import archive, changes, story
+from waggle_tasks.experiments.results import palette
 from waggle_tasks.protocol import payload
 
 _VIDEOS = {'.webm': 'video/webm', '.mp4': 'video/mp4'}
@@ -50,6 +52,24 @@ def write(folder: pathlib.Path) -> pathlib.Path:
       f'{folder} holds data that no run left: {error!r}'
     ) from None
   return document.save(folder, whole)
+
+
+def leave(folder: pathlib.Path) -> None:
+  """Makes the page of a run that was just flown; a fault of it is a warning.
+
+  What was flown is in the files beside it, and `waggle report` makes the page
+  again from them.
+  """
+  try:
+    write(folder)
+  except OSError:  # A disk that is full is no fault of the page.
+    raise
+  except Exception as error:
+    print(
+      f'no page of the run was made: {error!r}; its data are whole, and'
+      ' `waggle report FOLDER` makes the page',
+      file=sys.stderr,
+    )
 
 
 def videos(folder: pathlib.Path) -> list[str]:

@@ -3,8 +3,8 @@
 import numpy as np
 
 from waggle_tasks.agents import description
-from waggle_tasks.experiments import traces as traces_lib
 from waggle_tasks.experiments.pages import markup, plot
+from waggle_tasks.experiments.record import traces as traces_lib
 
 _SLOWEST_PX_S = 0.01  # What the logarithmic plot of speeds shows as rest.
 _TOP = 22.0

@@ -8,8 +8,9 @@ import itertools
 import json
 import pathlib
 
-from waggle_tasks.experiments import archive, suite_tables
 from waggle_tasks.experiments.pages import document, markup
+from waggle_tasks.experiments.record import archive
+from waggle_tasks.experiments.results import suite_tables
 
 RESULTS = 'results.jsonl'
 

@@ -4,16 +4,15 @@ from collections.abc import Sequence
 import itertools
 import pathlib
 
-from waggle_tasks.experiments import (
+from waggle_tasks.experiments.pages import document, heat_map, markup
+from waggle_tasks.experiments.record import provenance, scenario_fields
+from waggle_tasks.experiments.results import (
   envelope,
   heat,
-  provenance,
-  scenario_fields,
-  statistics,
+  intervals,
   sweep_fit,
   sweep_tables,
 )
-from waggle_tasks.experiments.pages import document, heat_map, markup
 
 _MOST_FAILURES = 500  # Listed with their commands; results.csv has all.
 
@@ -140,7 +139,7 @@ def _table(panel: envelope.Panel) -> markup.Markup:
   lines: list[list[markup.Content]] = []
   for (down, across), rows in panel.cells.items():
     got = envelope.count(rows)
-    low, high = statistics.clopper_pearson(got.right, got.exposures)
+    low, high = intervals.clopper_pearson(got.right, got.exposures)
     lines.append(
       [
         heat.label(down), heat.label(across), f'{got.right}/{got.exposures}',

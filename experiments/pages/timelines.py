@@ -3,8 +3,9 @@
 from collections.abc import Sequence
 
 from waggle_tasks.agents import observer_agent, receiver
-from waggle_tasks.experiments import archive, episode, palette, story
 from waggle_tasks.experiments.pages import markup, plot
+from waggle_tasks.experiments.record import archive, episode, story
+from waggle_tasks.experiments.results import palette
 from waggle_tasks.protocol.symbols import Symbol
 from waggle_tasks.tasks import safety
 

@@ -7,7 +7,8 @@ import cv2
 import numpy as np
 
 from waggle_tasks import errors
-from waggle_tasks.experiments import files, reader
+from waggle_tasks.experiments.machine import files
+from waggle_tasks.experiments.record import reader
 from waggle_tasks.experiments.video import encoders, layout, moment, page
 from waggle_tasks.protocol.symbols import Symbol
 

@@ -10,7 +10,7 @@ from typing import Protocol
 import cv2
 import numpy as np
 
-from waggle_tasks.experiments import files, quiet
+from waggle_tasks.experiments.machine import files, quiet
 from waggle_tasks.experiments.video import layout
 
 _QUEUE = 8  # Pictures that may wait: more would only fill the memory.

@@ -9,7 +9,7 @@ import dm_env
 
 from waggle_tasks import scenario
 from waggle_tasks.agents import observer_agent
-from waggle_tasks.experiments import changes, story
+from waggle_tasks.experiments.record import changes, story
 from waggle_tasks.experiments.video import encoders, layout, lens, page
 from waggle_tasks.protocol import checks, timing
 

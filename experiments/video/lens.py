@@ -11,7 +11,7 @@ import numpy as np
 from waggle_tasks import scenario
 from waggle_tasks.agents import observer_agent
 from waggle_tasks.entities import renderer
-from waggle_tasks.experiments import story
+from waggle_tasks.experiments.record import story
 from waggle_tasks.experiments.video import layout, moment
 from waggle_tasks.protocol import timing
 

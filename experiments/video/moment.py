@@ -8,7 +8,7 @@ import numpy as np
 
 from waggle_tasks.agents import klt
 from waggle_tasks.agents import receiver as receiver_lib
-from waggle_tasks.experiments import episode, story
+from waggle_tasks.experiments.record import episode, story
 from waggle_tasks.protocol.symbols import Symbol
 from waggle_tasks.tasks import safety
 

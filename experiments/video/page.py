@@ -5,7 +5,7 @@ from typing import Protocol
 
 import numpy as np
 
-from waggle_tasks.experiments import story
+from waggle_tasks.experiments.record import story
 from waggle_tasks.experiments.video import layout, moment, panel, pen, tiles
 
 GROUND = '#14171c'

@@ -6,7 +6,8 @@ import math
 import numpy as np
 
 from waggle_tasks.agents import observer_agent, receiver
-from waggle_tasks.experiments import episode, palette, story
+from waggle_tasks.experiments.record import episode, story
+from waggle_tasks.experiments.results import palette
 from waggle_tasks.experiments.video import layout, moment, pen, tiles
 from waggle_tasks.protocol.symbols import Symbol
 

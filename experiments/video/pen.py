@@ -5,7 +5,7 @@ import functools
 import cv2
 import numpy as np
 
-from waggle_tasks.experiments import palette
+from waggle_tasks.experiments.results import palette
 from waggle_tasks.experiments.video import layout
 
 REGULAR, BOLD = 400, 700

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 import cv2
 import numpy as np
 
-from waggle_tasks.experiments import palette
+from waggle_tasks.experiments.results import palette
 from waggle_tasks.experiments.video import layout, moment, pen
 
 BAR = '#262b33'

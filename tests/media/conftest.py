@@ -13,14 +13,15 @@ import numpy as np
 import pytest
 
 from waggle_tasks import scenario
-from waggle_tasks.experiments import (
+from waggle_tasks.experiments.episodes import evaluator
+from waggle_tasks.experiments.episodes import rollout as rollout_lib
+from waggle_tasks.experiments.pages import run_page
+from waggle_tasks.experiments.record import (
   capture,
-  evaluator,
   provenance,
-  records,
   verdicts,
+  writer,
 )
-from waggle_tasks.experiments import rollout as rollout_lib
 from waggle_tasks.experiments.video import film
 
 HERE = pathlib.Path(__file__).parent
@@ -53,7 +54,8 @@ def recorded(
     rollout = rollout_lib.run(scene, 'klt', [camera, recorder])
   verdict = evaluator.evaluate(scene, rollout)
   origin = provenance.Provenance.of('waggle x', rollout.renderer, began)
-  records.write_run(folder, scene, 'klt', rollout, verdict, origin)
+  writer.write_run(folder, scene, 'klt', rollout, verdict, origin)
+  run_page.write(folder)
   return Recorded(folder, scene, rollout, verdict)
 
 

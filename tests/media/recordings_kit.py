@@ -16,7 +16,7 @@ import cv2
 import numpy as np
 
 from waggle_tasks import registry, scenario
-from waggle_tasks.experiments import capture
+from waggle_tasks.experiments.record import capture
 from waggle_tasks.protocol import agreement as agreement_lib
 from waggle_tasks.protocol import camera, reference
 

@@ -11,7 +11,8 @@ import pytest
 
 from waggle_tasks import scenario, sensor
 from waggle_tasks.agents import navigator, observer_agent
-from waggle_tasks.experiments import capture, rollout
+from waggle_tasks.experiments.episodes import rollout
+from waggle_tasks.experiments.record import capture
 
 SHAPE = (480, 640, 3)
 

@@ -16,8 +16,9 @@ import pytest
 
 from waggle_tasks import suites
 from waggle_tasks.agents import config, group, receivers
-from waggle_tasks.experiments import capture, reader, recordings, records
-from waggle_tasks.experiments import rollout as rollout_lib
+from waggle_tasks.experiments.episodes import rollout as rollout_lib
+from waggle_tasks.experiments.record import capture, reader, writer
+from waggle_tasks.experiments.video import recordings
 from waggle_tasks.protocol import agreement, camera, gestures
 
 Waggle = Callable[..., subprocess.CompletedProcess[str]]
@@ -241,7 +242,7 @@ def test_replays_of_the_papers_cases_are_the_online_runs(
   (case,) = (case for case in suites.find('paper') if case.name == name)
   with capture.Recorder(tmp_path) as recorder:
     rollout = rollout_lib.run(case.scene, receiver, [recorder])
-  lines = records.event_lines(rollout)
+  lines = writer.event_lines(rollout)
   (tmp_path / 'events.jsonl').write_text(''.join(f'{x}\n' for x in lines))
   for path in capture.paths(tmp_path):
     assert path.stat().st_size < 30e6
@@ -391,7 +392,7 @@ def test_huge_pictures_are_refused_without_the_memory_for_them(
   path = video([np.zeros((side, side, 3), np.uint8)] * 2, 'x.avi', 'MJPG')
   code = (
     'import pathlib, resource, sys\n'
-    'from waggle_tasks.experiments import recordings\n'
+    'from waggle_tasks.experiments.video import recordings\n'
     'peak = lambda: resource.getrusage(resource.RUSAGE_SELF).ru_maxrss\n'
     'before = peak()\n'
     'try: recordings.Recording(pathlib.Path(sys.argv[1]))\n'

@@ -9,7 +9,9 @@ import numpy as np
 import pytest
 
 from waggle_tasks import scenario
-from waggle_tasks.experiments import palette, png, shots, story, traces
+from waggle_tasks.experiments.record import story, traces
+from waggle_tasks.experiments.results import palette, png
+from waggle_tasks.experiments.video import shots
 
 Waggle = Callable[..., subprocess.CompletedProcess[str]]
 

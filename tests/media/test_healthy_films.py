@@ -16,8 +16,7 @@ import cv2
 import numpy as np
 import pytest
 
-from waggle_tasks.experiments import recordings
-from waggle_tasks.experiments.video import encoders
+from waggle_tasks.experiments.video import encoders, recordings
 
 av = pytest.importorskip('av')
 small = pytest.importorskip('small_films', exc_type=ImportError)
@@ -31,7 +30,7 @@ MENDS = r"pip install 'waggle-tasks\[video\]'"
 def no_pyav(monkeypatch: pytest.MonkeyPatch) -> None:
   """Has the import of PyAV fail, as where it is not installed."""
   monkeypatch.setitem(sys.modules, 'av', None)
-  name = 'waggle_tasks.experiments.pyav_film'
+  name = 'waggle_tasks.experiments.video.pyav_film'
   monkeypatch.delitem(sys.modules, name, raising=False)
   package = sys.modules['waggle_tasks.experiments']
   monkeypatch.delattr(package, 'pyav_film', raising=False)

@@ -7,7 +7,8 @@ import pathlib
 import pytest
 
 from waggle_tasks import scenario
-from waggle_tasks.experiments import reader, recordings
+from waggle_tasks.experiments.record import reader
+from waggle_tasks.experiments.video import recordings
 from waggle_tasks.protocol import camera
 
 kit = pytest.importorskip('recordings_kit', exc_type=ImportError)

@@ -14,7 +14,6 @@ import numpy as np
 import pytest
 
 from waggle_tasks import scenario
-from waggle_tasks.experiments import archive, records, traces
 from waggle_tasks.experiments.pages import (
   document,
   markup,
@@ -22,6 +21,7 @@ from waggle_tasks.experiments.pages import (
   run_page,
   suite_page,
 )
+from waggle_tasks.experiments.record import archive, encoding, traces
 
 Waggle = Callable[..., subprocess.CompletedProcess[str]]
 DATA = (
@@ -142,7 +142,7 @@ def test_the_head_tells_all_that_is_unlike_the_default(words: str) -> None:
 
 def test_a_run_of_the_defaults_changes_nothing(copied: pathlib.Path) -> None:
   config = json.loads((copied / 'config.json').read_text())
-  config['scenario'] = records.to_json(scenario.Scenario(observers=2))
+  config['scenario'] = encoding.to_json(scenario.Scenario(observers=2))
   (copied / 'config.json').write_text(json.dumps(config))
   page = run_page.write(copied).read_text(encoding='utf-8')
   assert 'Changed' not in str(Text(page))

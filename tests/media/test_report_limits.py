@@ -11,16 +11,21 @@ import pytest
 
 from waggle_tasks import scenario
 from waggle_tasks.agents import description, receivers
-from waggle_tasks.experiments import (
-  evaluator,
+from waggle_tasks.experiments.episodes import evaluator
+from waggle_tasks.experiments.episodes import rollout as rollout_lib
+from waggle_tasks.experiments.pages import (
+  document,
+  gesture_plots,
+  run_page,
+  signals,
+)
+from waggle_tasks.experiments.record import (
   provenance,
-  records,
   story,
   traces,
   verdicts,
+  writer,
 )
-from waggle_tasks.experiments import rollout as rollout_lib
-from waggle_tasks.experiments.pages import document, gesture_plots, signals
 
 NAMES = (
   'view_bank',
@@ -52,7 +57,8 @@ def runs(
     rollout = rollout_lib.run(scene, name)
     verdict = evaluator.evaluate(scene, rollout)
     origin = provenance.Provenance.of('waggle x', rollout.renderer, began)
-    records.write_run(folder, scene, name, rollout, verdict, origin)
+    writer.write_run(folder, scene, name, rollout, verdict, origin)
+    run_page.write(folder)
     page = (folder / document.NAME).read_text(encoding='utf-8')
     page = re.sub('<(style|script).*?</', '<', page, flags=re.DOTALL)
     words = html.unescape(re.sub('<[^>]+>', ' ', page))

@@ -14,8 +14,9 @@ import pytest
 from waggle_tasks import registry, scenario
 from waggle_tasks.agents import observer_agent, receiver
 from waggle_tasks.entities import renderer
-from waggle_tasks.experiments import palette, records, story
-from waggle_tasks.experiments import rollout as rollout_lib
+from waggle_tasks.experiments.episodes import rollout as rollout_lib
+from waggle_tasks.experiments.record import story, writer
+from waggle_tasks.experiments.results import palette
 from waggle_tasks.experiments.video import (
   encoders,
   film,
@@ -145,9 +146,9 @@ def test_filming_changes_no_event(
   with film.Film(tmp_path, scene, fps=25.0, scale=0.25) as camera:
     filmed = rollout_lib.run(scene, 'klt', [camera])
   plain = rollout_lib.run(scene, 'klt')
-  lines = [*records.event_lines(plain)]
+  lines = [*writer.event_lines(plain)]
   assert len(lines) > 1
-  assert [*records.event_lines(filmed)] == lines
+  assert [*writer.event_lines(filmed)] == lines
 
 
 def test_many_observers_get_a_video_a_page(tmp_path: pathlib.Path) -> None:

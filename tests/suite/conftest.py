@@ -9,7 +9,7 @@ import shutil
 import pytest
 
 from waggle_tasks import suites
-from waggle_tasks.experiments import suite_runner
+from waggle_tasks.experiments.studies import suite_runner
 
 # The longest comes first to the workers, the shortest to the table.
 ROWS = (

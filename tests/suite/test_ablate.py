@@ -10,7 +10,8 @@ import subprocess
 import pytest
 
 from waggle_tasks.agents import receivers
-from waggle_tasks.experiments import ablations, verdicts
+from waggle_tasks.experiments.record import verdicts
+from waggle_tasks.experiments.studies import ablations
 
 Waggle = Callable[..., subprocess.CompletedProcess[str]]
 Row = dict[str, object]

@@ -13,7 +13,7 @@ import types
 
 import pytest
 
-from waggle_tasks.experiments import pool
+from waggle_tasks.experiments.studies import pool
 
 HERE = pathlib.Path(__file__).parent
 PARENT = """

@@ -11,7 +11,7 @@ import pytest
 
 from waggle_tasks import suites
 from waggle_tasks.agents import receivers
-from waggle_tasks.experiments import variants
+from waggle_tasks.experiments.studies import variants
 
 Waggle = Callable[..., subprocess.CompletedProcess[str]]
 Row = dict[str, object]

@@ -8,11 +8,9 @@ import re
 import pytest
 
 from waggle_tasks import suites
-from waggle_tasks.experiments import (
-  identity,
-  provenance,
-  suite_case,
-)
+from waggle_tasks.experiments.episodes import identity
+from waggle_tasks.experiments.record import provenance
+from waggle_tasks.experiments.studies import suite_case
 
 ELSEWHERE = 'from another configuration, other sources or other versions'
 

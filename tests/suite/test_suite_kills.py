@@ -11,7 +11,8 @@ import sys
 
 import pytest
 
-from waggle_tasks.experiments import pool, records
+from waggle_tasks.experiments.record import folders
+from waggle_tasks.experiments.studies import pool
 
 Launched = subprocess.Popen[bytes]
 Session = Callable[[int], dict[int, str]]
@@ -138,7 +139,7 @@ def test_a_disk_full_in_a_case_is_one_line_and_the_next_run_ends_well(
   )
   file_limit(8192)  # Less than a provenance.json.
   error = r'^`output` must be writable: blink could not be .*too large; .*kept$'
-  with pytest.raises(records.OutputError, match=error):
+  with pytest.raises(folders.OutputError, match=error):
     fresh_blink.run()
   file_limit(None)
   assert len(flown) == 1  # Another flight would not make room.
@@ -159,7 +160,7 @@ def test_a_disk_full_at_the_end_leaves_no_half_table_and_the_next_run_ends_well(
   for name in ('results.jsonl', 'results.csv'):
     (finished.folder / name).unlink()
   file_limit(size)  # Less than the lines of three cases.
-  with pytest.raises(records.OutputError, match=r'must be writable.*too large'):
+  with pytest.raises(folders.OutputError, match=r'must be writable.*too large'):
     finished.run()
   file_limit(None)
   assert not (finished.folder / 'results.jsonl').exists()

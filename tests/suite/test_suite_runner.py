@@ -13,7 +13,8 @@ import time
 import pytest
 
 from waggle_tasks import suites
-from waggle_tasks.experiments import pool, provenance, records, suite_case
+from waggle_tasks.experiments.record import folders, provenance
+from waggle_tasks.experiments.studies import pool, suite_case
 
 FILES = {
   'config.json', 'events.jsonl', 'result.json', 'provenance.json', 'seal.json',
@@ -64,7 +65,7 @@ def test_a_case_says_what_made_it(reference: object) -> None:
   assert origin['versions'] == provenance.versions()
   assert origin['renderer']
   assert origin['began'] <= origin['ended']
-  name = 'waggle_tasks.experiments/suite_runner.py'
+  name = 'waggle_tasks.experiments/studies/suite_runner.py'
   assert re.fullmatch('[0-9a-f]{64}', origin['sources'][name])
 
 
@@ -103,7 +104,7 @@ def test_a_folder_that_is_being_written_is_refused(blink: object) -> None:
   with (blink.folder / '.lock').open('w') as lock:
     fcntl.flock(lock, fcntl.LOCK_EX)
     with pytest.raises(
-      records.OutputError,
+      folders.OutputError,
       match=r'`output` must not be in use: another run is writing .*results$',
     ):
       blink.run()
@@ -118,7 +119,7 @@ def test_a_folder_with_other_things_is_refused_and_left_alone(
   folder.mkdir()
   (folder / name).write_text('mine')
   error = f'`output` must be new or hold results of a suite: {folder} holds'
-  with pytest.raises(records.OutputError, match=re.escape(f'{error} {name}')):
+  with pytest.raises(folders.OutputError, match=re.escape(f'{error} {name}')):
     fresh_blink.run()
   assert [path.name for path in folder.iterdir()] == [name]
 
@@ -127,7 +128,7 @@ def test_a_file_in_the_place_of_the_folder_is_refused(
   fresh_blink: object,
 ) -> None:
   fresh_blink.folder.write_text('mine')
-  with pytest.raises(records.OutputError, match='`output` must be writable: '):
+  with pytest.raises(folders.OutputError, match='`output` must be writable: '):
     fresh_blink.run()
   assert fresh_blink.folder.read_text() == 'mine'
 

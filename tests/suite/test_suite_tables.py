@@ -6,7 +6,7 @@ import re
 import pytest
 
 from waggle_tasks import suites
-from waggle_tasks.experiments import suite_tables
+from waggle_tasks.experiments.results import suite_tables
 
 Row = dict[str, object]
 

@@ -10,17 +10,16 @@ import types
 import numpy as np
 import pytest
 
-from waggle_tasks.experiments import (
-  evaluator,
+from waggle_tasks.experiments.episodes import evaluator
+from waggle_tasks.experiments.episodes import rollout as rollout_lib
+from waggle_tasks.experiments.record import scenario_fields, verdicts
+from waggle_tasks.experiments.studies import (
   pool,
-  scenario_fields,
   sweep_cases,
   sweep_flight,
   sweep_results,
   sweep_runner,
-  verdicts,
 )
-from waggle_tasks.experiments import rollout as rollout_lib
 
 # What becomes of an observer of a case, by its number from 1; all is well
 # where it says nothing.

@@ -17,13 +17,9 @@ from unittest import mock
 
 import pytest
 
-from waggle_tasks.experiments import (
-  cluster,
-  dask_probe,
-  outside,
-  pool,
-  provenance,
-)
+from waggle_tasks.experiments.episodes import outside
+from waggle_tasks.experiments.record import provenance
+from waggle_tasks.experiments.studies import cluster, dask_probe, pool
 
 
 def _ipv6() -> bool:

@@ -7,16 +7,17 @@ import re
 import numpy as np
 import pytest
 
-from waggle_tasks.experiments import (
+from waggle_tasks.experiments.pages import sweep_output
+from waggle_tasks.experiments.results import (
   envelope,
   figures,
   heat,
   logistic,
   palette,
   sweep_fit,
-  sweep_output,
   sweep_tables,
 )
+from waggle_tasks.experiments.studies import sweep_results
 
 SILENT = {
   'decoded': None,
@@ -275,7 +276,7 @@ def test_pictures_and_page_are_drawn_the_same_twice(
   for name in 'ab':
     sweep_output.write(tmp_path / name, rows)
   files = {path.name for path in (tmp_path / 'a').iterdir()}
-  assert files == {'summary.txt', 'index.html', *figures.NAMES}
+  assert files == {'summary.txt', 'index.html', *sweep_results.FIGURES}
   for name in files - {'index.html'}:
     one, other = ((tmp_path / each / name).read_bytes() for each in 'ab')
     assert one == other

@@ -7,7 +7,7 @@ import resource
 
 import pytest
 
-from waggle_tasks.experiments import journal
+from waggle_tasks.experiments.record import journal
 
 ROWS = [{'n': n, 'text': 'x' * 50} for n in range(3)]
 

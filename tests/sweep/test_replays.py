@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from waggle_tasks import registry, scenario
-from waggle_tasks.experiments import spoilers, tape
+from waggle_tasks.experiments.episodes import tape
+from waggle_tasks.experiments.studies import spoilers
 from waggle_tasks.protocol import agreement
 
 Waggle = Callable[..., subprocess.CompletedProcess[str]]

@@ -6,7 +6,7 @@ import re
 import pytest
 
 from waggle_tasks import errors, scenario
-from waggle_tasks.experiments import scenario_fields
+from waggle_tasks.experiments.record import scenario_fields
 from waggle_tasks.protocol import gestures
 
 

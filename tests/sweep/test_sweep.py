@@ -10,7 +10,7 @@ import sys
 
 import pytest
 
-from waggle_tasks.experiments import figures
+from waggle_tasks.experiments.results import figures
 
 Waggle = Callable[..., subprocess.CompletedProcess[str]]
 BRIEF = ('--control=no_send', '--duration_s=0.04', '--observers=1')

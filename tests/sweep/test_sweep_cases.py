@@ -6,7 +6,7 @@ import types
 import pytest
 
 from waggle_tasks import errors
-from waggle_tasks.experiments import sweep_cases
+from waggle_tasks.experiments.studies import sweep_cases
 
 Make = types.SimpleNamespace
 

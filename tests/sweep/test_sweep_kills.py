@@ -9,7 +9,7 @@ import sys
 
 import pytest
 
-from waggle_tasks.experiments import journal
+from waggle_tasks.experiments.record import journal
 
 Launched = subprocess.Popen[bytes]
 Session = Callable[[int], dict[int, str]]

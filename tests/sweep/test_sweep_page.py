@@ -5,14 +5,10 @@ import re
 
 import pytest
 
-from waggle_tasks.experiments import (
-  envelope,
-  figures,
-  provenance,
-  scenario_fields,
-  sweep_output,
-)
-from waggle_tasks.experiments.pages import heat_map, sweep_page
+from waggle_tasks.experiments.pages import heat_map, sweep_output, sweep_page
+from waggle_tasks.experiments.record import provenance, scenario_fields
+from waggle_tasks.experiments.results import envelope, figures
+from waggle_tasks.experiments.studies import sweep_results
 
 ORIGIN = {
   'command': 'waggle sweep --grid=distance_m=0.6,1.3',
@@ -148,5 +144,5 @@ def test_a_whole_sweeps_page_holds_its_provenance(
   page = sweep_output.write(told.folder, rows).read_text(encoding='utf-8')
   digest = provenance.source_digest(provenance.source_hashes())
   assert digest in page
-  for name in ('index.html', 'summary.txt', *figures.NAMES):
+  for name in ('index.html', 'summary.txt', *sweep_results.FIGURES):
     (told.folder / name).unlink(missing_ok=True)

@@ -9,15 +9,13 @@ import re
 
 import pytest
 
-from waggle_tasks.experiments import (
+from waggle_tasks.experiments.record import (
   archive,
+  folders,
   journal,
-  pool,
   provenance,
-  records,
-  sweep_results,
-  sweep_runner,
 )
+from waggle_tasks.experiments.studies import pool, sweep_results, sweep_runner
 
 Jobs = Sequence[pool.Job]
 
@@ -193,7 +191,7 @@ def test_a_folder_of_something_else_is_refused(sweep: object) -> None:
   sweep.folder.mkdir()
   (sweep.folder / 'cases').mkdir()
   error = 'new or hold results of a sweep: .* holds cases'
-  with pytest.raises(records.OutputError, match=error):
+  with pytest.raises(folders.OutputError, match=error):
     sweep.run()
 
 

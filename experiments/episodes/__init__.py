@@ -1,0 +1,1 @@
+"""Flies an episode, and scores it by truth."""

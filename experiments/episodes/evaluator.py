@@ -1,0 +1,226 @@
+"""Scores an episode by truth and event logs, never by a navigator's word.
+
+The rules are those of the paper's section 'Metrics and provenance checks'.
+The expected displacement is calculated here from the bits that were sent, on
+purpose without the code that the navigators use.
+"""
+
+from collections.abc import Sequence
+import math
+from typing import Any
+
+import numpy as np
+
+from waggle_tasks import scenario
+from waggle_tasks.agents import observer_agent, receiver
+from waggle_tasks.experiments.episodes import reasons
+from waggle_tasks.experiments.record import episode, verdicts
+from waggle_tasks.protocol import flight, timing
+from waggle_tasks.tasks import progress, safety
+
+# A message is eight motions between nine nulls (paper, section 'Motion
+# alphabet and message framing').
+NUM_EVENTS = 17
+NUM_NULLS = 9
+
+
+def expected_bits(scene: scenario.Scenario, number: int) -> str | None:
+  """What observer `number`, from 1, should read; None for nothing."""
+  if not scene.sends_message:
+    return None
+  if scene.control == 'black_input' and number == scene.black_observer:
+    return None
+  return scene.payload
+
+
+def expected_displacement_m(scene: scenario.Scenario) -> np.ndarray:
+  """Where the sent bits lead, (3,) metres: equations 1 and 2, by a table."""
+  bits = scene.payload
+  steps = [int(bit) for bit in bits]
+  turn_rad = (4 * steps[1] + 2 * steps[2] + steps[3]) * (
+    scene.units.heading_step_rad
+  )
+  reach_m = (2 * steps[4] + steps[5]) * scene.units.distance_unit_m
+  forward = reach_m if steps[0] == 0 else -reach_m
+  # Heading zero is +Y, and a counterclockwise turn leads towards -X.
+  return forward * np.array([-math.sin(turn_rad), math.cos(turn_rad), 0.0])
+
+
+def evaluate(
+  scene: scenario.Scenario, rollout: episode.Rollout
+) -> verdicts.Verdict:
+  """Scores every observer of an episode."""
+  outcomes = []
+  for number in range(1, scene.observers + 1):
+    name = f'observer_{number}'
+    expected = expected_bits(scene, number)
+    if expected is None:
+      outcomes.append(_judge_waiting(rollout, name))
+    else:
+      outcomes.append(_judge_reading(scene, rollout, name, expected))
+  return verdicts.Verdict(tuple(outcomes))
+
+
+def _judge_waiting(rollout: episode.Rollout, name: str) -> verdicts.Outcome:
+  """An observer that must neither read a message nor move."""
+  failures = _contact(rollout, name)
+  _, decoded = _message(rollout.events[name])
+  if decoded is not None:
+    failures.append(f'message: read {decoded}, nothing was sent')
+  start_s = _start_s(rollout.events[name])
+  if start_s is not None:
+    failures.append(f'navigation: started at {start_s:.2f} s')
+  failures += _early_motion(rollout, name, math.inf)
+  return verdicts.Outcome(
+    name, None, decoded, start_s=start_s, failures=tuple(failures)
+  )
+
+
+def _judge_reading(
+  scene: scenario.Scenario,
+  rollout: episode.Rollout,
+  name: str,
+  expected: str,
+) -> verdicts.Outcome:
+  """An observer that must read the message and fly it."""
+  events = rollout.events[name]
+  message, decoded = _message(events)
+  start_s = _start_s(events)
+  failures = _contact(rollout, name)
+  until_s = math.inf if start_s is None else start_s
+  failures += _early_motion(rollout, name, until_s)
+  if message is None or decoded is None:
+    why = reasons.diagnose(events)
+    found = [f'message: none, {why}', *reasons.find(scene, rollout, name)]
+    return verdicts.Outcome(
+      name, expected, start_s=start_s,
+      failures=(*found, *failures), diagnosis=why,
+    )  # fmt: skip
+  seen = [e for e in events if isinstance(e, receiver.Event)]
+  frame_events = seen[: seen.index(message) + 1][-NUM_EVENTS:]
+  failures += _frame(frame_events, decoded)
+  if decoded != expected:
+    failures.append(f'message: read {decoded}, sent {expected}')
+    failures += reasons.find(scene, rollout, name)
+  final_null_s = message.time_s if message.symbol == 'NULL' else None
+  if start_s != final_null_s:
+    null = 'no final null'
+    if final_null_s is not None:
+      null = f'final null at {final_null_s} s'
+    failures.append(f'release: navigation at {start_s} s, {null}')
+  failures += [
+    f'safety: {event.reason}'
+    for event in events
+    if isinstance(event, safety.Refusal)
+  ]
+  flown = _fly(scene, rollout, name, message.time_s)
+  failures += flown.pop('failures')
+  return verdicts.Outcome(
+    name, expected, decoded,
+    end_s=_end_s(frame_events),
+    final_null_s=final_null_s, start_s=start_s,
+    failures=tuple(failures), **flown,
+  )  # fmt: skip
+
+
+def _message(
+  events: Sequence[episode.Event],
+) -> tuple[receiver.Event | None, str | None]:
+  """The event that completed a message, and its bits."""
+  for event in events:
+    if isinstance(event, receiver.Event) and event.message is not None:
+      return event, event.message.bits
+  return None, None
+
+
+def _end_s(events: Sequence[receiver.Event]) -> float | None:
+  times_s = [event.time_s for event in events if event.symbol == 'END']
+  return times_s[-1] if times_s else None
+
+
+def _start_s(events: Sequence[episode.Event]) -> float | None:
+  for event in events:
+    if (
+      isinstance(event, observer_agent.Navigation)
+      and event.deed is observer_agent.Deed.START
+    ):
+      return event.time_s
+  return None
+
+
+def _contact(rollout: episode.Rollout, name: str) -> list[str]:
+  for time_s, pair in rollout.contacts:
+    if name in pair:
+      return [f'contact: {" and ".join(pair)} at {time_s:.2f} s']
+  return []
+
+
+def _early_motion(
+  rollout: episode.Rollout, name: str, until_s: float
+) -> list[str]:
+  """Whether it left its place before `until_s`."""
+  positions_m = rollout.steady_m(name)
+  away_m = np.linalg.norm(positions_m - positions_m[0], axis=1)
+  early = (away_m > progress.MOTION_M) & (rollout.times_s <= until_s)
+  if not early.any():
+    return []
+  first_s = rollout.times_s[early.argmax()]
+  return [f'{verdicts.EARLY}: {away_m[early].max():.3f} m from {first_s:.2f} s']
+
+
+def _frame(events: Sequence[receiver.Event], bits: str) -> list[str]:
+  """Whether the events are the whole frame of a message, one by one."""
+  seen = [str(event.symbol) for event in events]
+  motions = ['START', *bits, 'END']
+  if seen[1::2] == motions and seen[::2] == ['NULL'] * NUM_NULLS:
+    return []
+  return [
+    f'frame: not the {NUM_EVENTS} events of {bits} with their {NUM_NULLS}'
+    f' nulls: {" ".join(seen)}'
+  ]
+
+
+def _fly(
+  scene: scenario.Scenario,
+  rollout: episode.Rollout,
+  name: str,
+  message_s: float,
+) -> dict[str, Any]:
+  """Arrival and hold at the place that was sent, by true positions."""
+  positions_m, times_s = rollout.steady_m(name), rollout.times_s
+  begin = int(np.searchsorted(times_s, message_s - timing.FRAME_S / 2))
+  # An observer flies from where it was, drift and all, to the agreed height.
+  target_m = rollout.positions_m[name][begin] + expected_displacement_m(scene)
+  target_m[2] = flight.HOVER_HEIGHT_M
+  error_m = np.linalg.norm(positions_m - target_m, axis=1)
+  speed_mps = (
+    np.linalg.norm(
+      np.diff(positions_m, axis=0, prepend=positions_m[:1]), axis=1
+    )
+    / timing.FRAME_S
+  )
+  there = (error_m < flight.ARRIVAL_ERROR_M) & (
+    speed_mps < flight.ARRIVAL_SPEED_MPS
+  )
+  there[: begin + 1] = False
+  dwell = timing.frames(flight.ARRIVAL_DWELL_S)
+  arrival = next(
+    (k for k in range(begin + dwell, len(there)) if there[k - dwell : k].all()),
+    None,
+  )
+  last_m = float(error_m[-1])
+  if arrival is None:
+    reason = f'arrival: never, {last_m * 1e3:.1f} mm away at the end'
+    return {'error_m': last_m, 'failures': [reason]}
+  left = np.flatnonzero(error_m[arrival:] >= flight.ARRIVAL_ERROR_M)
+  stayed = int(left[0]) if left.size else len(there) - 1 - arrival
+  hold_s = stayed * timing.FRAME_S
+  failures = []
+  if hold_s < flight.HOLD_S - 1e-6:
+    failures.append(f'hold: {hold_s:.2f} s, under {flight.HOLD_S:g} s')
+  return {
+    'arrival_s': float(times_s[arrival]),
+    'error_m': last_m,
+    'hold_s': hold_s,
+    'failures': failures,
+  }

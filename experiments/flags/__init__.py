@@ -1,0 +1,1 @@
+"""Flags that launchers share: of scenarios, receivers and recordings."""

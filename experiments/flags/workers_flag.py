@@ -1,0 +1,40 @@
+"""The flag that says how many processes work, for launchers that take it."""
+
+import os
+
+from absl import flags
+
+from waggle_tasks import errors
+from waggle_tasks.protocol import checks
+
+# The flag defined here belongs to the launcher that asks for it.
+flags.disclaim_key_flags()
+
+_MOST = 1024
+
+
+def define(what: str = 'processes') -> flags.FlagHolder[int | None]:
+  """Defines the flag for the launcher that calls this.
+
+  Args:
+    what: What works, in its help.
+  """
+  return flags.DEFINE_integer(
+    'workers', None, f'How many {what}; unset, one for each core.'
+  )
+
+
+def count(value: int | None) -> int:
+  """How many workers a flag asks for, one a core if it is not given.
+
+  Args:
+    value: What it says.
+
+  Raises:
+    WaggleError: if it asks for none, or for too many.
+  """
+  if value is not None:
+    return checks.integer('workers', value, 1, _MOST, errors.WaggleError)
+  if hasattr(os, 'sched_getaffinity'):
+    return len(os.sched_getaffinity(0))
+  return os.cpu_count() or 1

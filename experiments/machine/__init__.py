@@ -1,0 +1,1 @@
+"""This machine: its renderer, its packages, its terminal and its files."""

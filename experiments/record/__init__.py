@@ -1,0 +1,1 @@
+"""What happened in an episode, as values and as files; nothing here flies."""

@@ -1,0 +1,1 @@
+"""What studies found: counts with limits, maps, tables and figures."""

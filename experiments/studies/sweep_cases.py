@@ -1,0 +1,141 @@
+"""A sweep as data: factors, their product, and the cases of every cell."""
+
+from collections.abc import Mapping, Sequence
+import dataclasses
+import hashlib
+import itertools
+import math
+from typing import Any
+
+from waggle_tasks import errors
+from waggle_tasks import scenario as scenario_lib
+from waggle_tasks.experiments.record import scenario_fields
+from waggle_tasks.protocol import checks
+
+RANDOM, ALL = 'random', 'all'
+MAX_CASES = 1_000_000
+_PAYLOAD_BITS = 6
+
+
+class SweepError(errors.WaggleError):
+  """A sweep that cannot be run."""
+
+
+@dataclasses.dataclass(frozen=True)
+class Case:
+  """One episode of a sweep.
+
+  Attributes:
+    cell: The factors and their values here.
+    repeat: Which of the cell's episodes, from 0.
+    values: Every value of the scenario, see `scenario_fields`.
+    scene: The scenario.
+  """
+
+  cell: Mapping[str, Any]
+  repeat: int
+  values: Mapping[str, Any]
+  scene: scenario_lib.Scenario
+
+  @property
+  def name(self) -> str:
+    """What it is called: its cell and its repeat."""
+    return f'{cell_name(self.cell)} #{self.repeat}'.lstrip()
+
+
+def cell_name(cell: Mapping[str, Any]) -> str:
+  """A cell as text, such as 'distance_m=0.6 bearing_deg=15.0'."""
+  return ' '.join(f'{name}={value}' for name, value in cell.items())
+
+
+def grid(texts: Sequence[str]) -> dict[str, list[object]]:
+  """The factors of a sweep.
+
+  Args:
+    texts: Such as 'distance_m=0.6,0.8'; for the payload 'payload=all' stands
+      for all 64.
+
+  Returns:
+    The values of each factor, by its name in `scenario_fields`.
+
+  Raises:
+    WaggleError: naming what is wrong with one of them.
+  """
+  out = {}
+  for text in texts:
+    name, equals, listed = text.partition('=')
+    if not equals:
+      raise SweepError(f'`grid` must be NAME=VALUE,VALUE,...: got {text!r}')
+    if name == 'seed':
+      raise SweepError('`grid` must not name seed: every case has its own')
+    others = [field for field in scenario_fields.defaults() if field != 'seed']
+    checks.choice('grid', name, others, SweepError)
+    if name in out:
+      raise SweepError(f'`grid` must name a field once: got {name} again')
+    values = [scenario_fields.parse(name, each) for each in listed.split(',')]
+    if name == 'payload' and listed == ALL:
+      values = [
+        f'{number:0{_PAYLOAD_BITS}b}' for number in range(2**_PAYLOAD_BITS)
+      ]
+    if len(set(values)) < len(values):
+      raise SweepError(f'`grid` must give a value once: got {text!r}')
+    out[name] = values
+  return out
+
+
+def cases(
+  factors: Mapping[str, Sequence[object]],
+  base: Mapping[str, Any],
+  repeats: int,
+) -> tuple[Case, ...]:
+  """Every case of a sweep, cell by cell.
+
+  Each case has a seed of its own: 32 bits of a SHA-256 of the repeat and of all
+  values of its scenario that are not the defaults, the base's seed among them.
+  A random payload comes from six other bits of it. So more factors, values or
+  repeats leave the other cases as they are, and two sweeps never share a case
+  unless it is the same scenario.
+
+  Args:
+    factors: See `grid`.
+    base: All values of the scenario that the factors change; its payload may
+      be 'random'.
+    repeats: How many episodes a cell has.
+
+  Raises:
+    WaggleError: if there are too many, or a scenario breaks a rule; then the
+      error names its cell.
+  """
+  checks.integer('repeats', repeats, 1, MAX_CASES, SweepError)
+  count = math.prod(map(len, factors.values())) * repeats
+  if count > MAX_CASES:
+    raise SweepError(
+      f'`grid` and `repeats` must make at most {MAX_CASES} cases: got {count}'
+    )
+  out = []
+  for values in itertools.product(*factors.values()):
+    cell = dict(zip(factors, values, strict=True))
+    try:
+      out += [_case(cell, base, repeat) for repeat in range(repeats)]
+    except errors.WaggleError as error:
+      raise SweepError(f'cell {cell_name(cell)}: {error}') from None
+  return tuple(out)
+
+
+def _case(
+  cell: Mapping[str, Any], base: Mapping[str, Any], repeat: int
+) -> Case:
+  values = {**base, **cell}
+  drawn = hashlib.sha256(_seed_text(values, repeat).encode()).digest()
+  values['seed'] = int.from_bytes(drawn[:4], 'big')
+  if values['payload'] == RANDOM:
+    number = drawn[4] % 2**_PAYLOAD_BITS
+    values['payload'] = f'{number:0{_PAYLOAD_BITS}b}'
+  return Case(cell, repeat, values, scenario_fields.make(values))
+
+
+def _seed_text(values: Mapping[str, Any], repeat: int) -> str:
+  """What a case's seed is drawn from: the same whichever way it was said."""
+  usual = scenario_fields.defaults()
+  unusual = {n: v for n, v in sorted(values.items()) if v != usual[n]}
+  return f'{cell_name(unusual)} #{repeat}'
