@@ -6,7 +6,6 @@ status 0 when video and report at most double the time, 1 otherwise.
 """
 
 from collections.abc import Sequence
-import datetime
 import pathlib
 import statistics
 import sys
@@ -78,11 +77,11 @@ def filmed(scene: scenario.Scenario) -> tuple[float, dict[str, int]]:
   with tempfile.TemporaryDirectory() as name:
     folder = pathlib.Path(name)
     began_s = time.perf_counter()
-    began = datetime.datetime.now(datetime.UTC)
+    start = provenance.Start.now('')
     with film.Film(folder, scene) as camera:
       rollout = rollout_lib.run(scene, 'klt', [camera])
     verdict = evaluator.evaluate(scene, rollout)
-    origin = provenance.Provenance.of('', rollout.renderer, began)
+    origin = start.end(rollout.renderer)
     writer.write_run(folder, scene, 'klt', rollout, verdict, origin)
     run_page.write(folder)
     took_s = time.perf_counter() - began_s

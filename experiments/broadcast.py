@@ -9,7 +9,6 @@ on bad input.
 
 from collections.abc import Iterator, Sequence
 import contextlib
-import datetime
 import pathlib
 import sys
 from typing import TYPE_CHECKING
@@ -65,13 +64,13 @@ def main(argv: Sequence[str]) -> int:
     foreign = {}  # One flight stands for itself; it is only not told so well.
     print(f'provenance.json will not be complete: {error}', file=sys.stderr)
   with _folder() as (draft, folder):
-    began = datetime.datetime.now(datetime.UTC)
+    start = provenance.Start.now(command, foreign)
     with recording_flags.recorders(draft, scene) as watchers:
       rollout = _roll(scene, _RECEIVER.value, watchers)
     verdict = evaluator.evaluate(scene, rollout)
     writer.write_run(
       draft, scene, _RECEIVER.value, rollout, verdict,
-      provenance.Provenance.of(command, rollout.renderer, began, foreign),
+      start.end(rollout.renderer),
     )  # fmt: skip
   run_page.leave(folder)
   print(report(scene, verdict))

@@ -24,7 +24,7 @@ from waggle_tasks.experiments.flags import (
   workers_flag,
 )
 from waggle_tasks.experiments.pages import sweep_output
-from waggle_tasks.experiments.record import nulls, provenance
+from waggle_tasks.experiments.record import folders, nulls, provenance
 from waggle_tasks.experiments.results import envelope, figures, sweep_tables
 from waggle_tasks.experiments.studies import sweep_cases, sweep_results
 from waggle_tasks.protocol import checks
@@ -88,18 +88,18 @@ def main(argv: Sequence[str]) -> int:
   return _show(folder, rows)
 
 
-def _summary(folders: Sequence[str]) -> int:
+def _summary(names: Sequence[str]) -> int:
   """Shows what is in result folders, all together."""
-  if not folders:
+  if not names:
     raise flags.Error('--summary takes at least one FOLDER: got none.')
   rows = [
-    row for name in folders for row in sweep_results.read(pathlib.Path(name))
+    row for name in names for row in sweep_results.read(pathlib.Path(name))
   ]
   if _OUTPUT.value is not None:
     folders.check_writable(pathlib.Path(_OUTPUT.value))
     return _show(pathlib.Path(_OUTPUT.value), rows)
-  if len(folders) == 1:
-    return _show(pathlib.Path(folders[0]), rows)
+  if len(names) == 1:
+    return _show(pathlib.Path(names[0]), rows)
   print(sweep_tables.report(rows, _MOST))
   return _status(rows)
 

@@ -285,7 +285,7 @@ def test_sources_that_change_meanwhile_are_noticed(
 ) -> None:
   registered(write('mine', RECEIVER.format(head='', body='pass')).Mine)
   foreign = outside.paths('mine', [SCENE])
-  hashes = provenance.source_hashes() | source_files.hashes(foreign)
+  hashes = provenance.deciding_hashes() | source_files.hashes(foreign)
   provenance.check_unchanged(hashes, 'sweep', foreign)
   (home / 'mine.py').write_text('# edited')
   with pytest.raises(provenance.SourceError, match='must not change'):

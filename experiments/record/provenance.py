@@ -20,20 +20,42 @@ if TYPE_CHECKING:
   from dm_control import mjcf
 
 
+_DECIDING = 'record', 'episodes', 'studies'  # Rooms of `experiments`.
+
+
 class SourceError(errors.WaggleError):
   """Sources that changed while something ran."""
 
 
 def source_hashes() -> dict[str, str]:
-  """SHA-256 of every source file, by its name inside the package."""
+  """SHA-256 of every source file, by the name that it is imported under.
+
+  So they are the same from a checkout and from what was built of it.
+  """
   out = {}
   for package in (waggle_tasks, agents, arenas, entities, experiments):
     (place,) = package.__path__
     folder = pathlib.Path(place)
     for path in sorted(folder.rglob('*.py')):
-      name = package.__name__ + '/' + path.relative_to(folder).as_posix()
+      parts = path.relative_to(folder).with_suffix('').parts
+      name = '.'.join((package.__name__, *parts)).removesuffix('.__init__')
       out[name] = hashlib.sha256(path.read_bytes()).hexdigest()
   return out
+
+
+def deciding_hashes() -> dict[str, str]:
+  """Those of `source_hashes` that decide what comes out of an episode.
+
+  Launchers, pages, tables and films do not.
+  """
+  return {
+    name: value for name, value in source_hashes().items() if _decides(name)
+  }
+
+
+def _decides(name: str) -> bool:
+  room = name.removeprefix(f'{experiments.__name__}.').partition('.')[0]
+  return not name.startswith(experiments.__name__) or room in _DECIDING
 
 
 def check_unchanged(
@@ -44,14 +66,14 @@ def check_unchanged(
   """Refuses results when the sources are not those that they began with.
 
   Args:
-    hashes: `source_hashes`, and those of `foreign`, as they were.
+    hashes: `deciding_hashes`, and those of `foreign`, as they were.
     what: What ran, for people.
     foreign: What else was used, see `outside.paths`.
 
   Raises:
     SourceError: if they changed.
   """
-  if source_hashes() | source_files.hashes(foreign) != hashes:
+  if deciding_hashes() | source_files.hashes(foreign) != hashes:
     raise SourceError(
       f'sources must not change while a {what} runs: run it again, cases of'
       ' other sources are run anew'
@@ -113,25 +135,43 @@ class Provenance:
   began: str
   ended: str
 
+
+@dataclasses.dataclass(frozen=True)
+class Start:
+  """What is known of a result before the work for it.
+
+  Attributes:
+    command: The shell line that reproduces the result.
+    sources: See `source_hashes`; and code from outside of the project.
+    began: When, in UTC.
+  """
+
+  command: str
+  sources: dict[str, str]
+  began: str
+
   @classmethod
-  def of(
+  def now(
     cls,
     command: str,
-    renderer: str,
-    began: datetime.datetime,
     foreign: Mapping[str, pathlib.Path] = types.MappingProxyType({}),
-  ) -> 'Provenance':
-    """The provenance of what has just ended.
+  ) -> 'Start':
+    """What is known now.
 
     Args:
       command: See above.
-      renderer: See above.
-      began: See above.
-      foreign: Code from outside that was used, see `outside.paths`.
+      foreign: Code from outside that is used, see `outside.paths`.
     """
-    hashes = source_hashes() | source_files.hashes(foreign)
-    ended = datetime.datetime.now(datetime.UTC)
-    return cls(
-      command, renderer, versions(), source_digest(hashes), hashes,
-      began.isoformat(timespec='seconds'), ended.isoformat(timespec='seconds'),
+    sources = source_hashes() | source_files.hashes(foreign)
+    return cls(command, sources, _now())
+
+  def end(self, renderer: str) -> Provenance:
+    """The provenance of a result that was just made with a GL renderer."""
+    return Provenance(
+      self.command, renderer, versions(), source_digest(self.sources),
+      self.sources, self.began, _now(),
     )  # fmt: skip
+
+
+def _now() -> str:
+  return datetime.datetime.now(datetime.UTC).isoformat(timespec='seconds')

@@ -1,7 +1,6 @@
 """One case of a suite: its identity, its run, and whether its files hold."""
 
 from collections.abc import Callable
-import datetime
 import hashlib
 import json
 import pathlib
@@ -47,18 +46,22 @@ def fly(
     Why it could not be written, which another try would not change; None when
     it was.
   """
-  began = datetime.datetime.now(datetime.UTC)
+  foreign = outside.paths(receiver_name, [case.scene])
+  start = provenance.Start.now(command, foreign)
   watchers = [job_progress.reporter(report)]
   try:
     shutil.rmtree(draft, ignore_errors=True)
     draft.mkdir(parents=True)
     rollout = rollout_lib.run(case.scene, receiver_name, watchers)
     verdict = evaluator.evaluate(case.scene, rollout)
-    origin = provenance.Provenance.of(
-      command, rollout.renderer, began,
-      outside.paths(receiver_name, [case.scene]),
-    )  # fmt: skip
-    writer.write_run(draft, case.scene, receiver_name, rollout, verdict, origin)
+    writer.write_run(
+      draft,
+      case.scene,
+      receiver_name,
+      rollout,
+      verdict,
+      start.end(rollout.renderer),
+    )
     sums = {path.name: _sha(path) for path in sorted(draft.iterdir())}
     seal = {'case': case.name, 'identity': identity_, 'files': sums}
     (draft / SEAL).write_text(encoding.pretty(seal), encoding='utf-8')

@@ -61,7 +61,7 @@ def run(
     UnknownSourceError: if code from outside has none.
   """
   foreign = outside.paths(receiver_name, (case.scene for case in cases))
-  own = provenance.source_hashes()
+  own = provenance.deciding_hashes()
   sources = own | source_files.hashes(foreign)
   digest = provenance.source_digest(own)
   identities = {
@@ -142,15 +142,15 @@ def _fly(jobs: Sequence[pool.Job], folder: pathlib.Path, workers: int) -> None:
 def _csv(rows: Sequence[dict[str, Any]]) -> str:
   """One line for each observer of each case."""
   text = io.StringIO()
-  writer = csv.writer(text, lineterminator='\n')
+  lines = csv.writer(text, lineterminator='\n')
   fields = [field for field in rows[0]['outcomes'][0] if field != 'failures']
-  writer.writerow(
+  lines.writerow(
     ['group', 'case', 'receiver', *fields, 'failures', 'group_passed']
   )
   for row in rows:
     for outcome in row['outcomes']:
       values = ['' if outcome[f] is None else outcome[f] for f in fields]
-      writer.writerow(
+      lines.writerow(
         [
           row['group'], row['case'], row['receiver'], *values,
           '; '.join(outcome['failures']), row['passed'],

@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 import csv
-import datetime
 import io
 import pathlib
 from typing import Any
@@ -66,9 +65,9 @@ def run(
     SourceError: if sources changed meanwhile.
     UnknownSourceError: if code from outside has none.
   """
-  began = datetime.datetime.now(datetime.UTC)
   foreign = outside.paths(receiver_name, (case.scene for case in cases))
-  own = provenance.source_hashes()
+  start = provenance.Start.now(command, foreign)
+  own = provenance.deciding_hashes()
   sources = own | source_files.hashes(foreign)
   digest = provenance.source_digest(own)
   identities = [
@@ -110,7 +109,7 @@ def run(
     files.replace(folder / sweep_results.TABLE, _csv(rows))
     if jobs or not (folder / sweep_results.PROVENANCE).exists():
       renderers = ', '.join(sorted({row['renderer'] for row in rows}))
-      origin = provenance.Provenance.of(command, renderers, began, foreign)
+      origin = start.end(renderers)
       files.replace(folder / sweep_results.PROVENANCE, encoding.pretty(origin))
   return rows
 

@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Sequence
 import dataclasses
-import datetime
 import importlib
 import pathlib
 import shutil
@@ -46,14 +45,13 @@ def recorded(
     control='black_input', observers=2, half_span_deg=10.0, **short
   )
   folder = tmp_path_factory.mktemp('run')
-  began = datetime.datetime.now(datetime.UTC)
   with (
     film.Film(folder, scene, fps=5.0, scale=0.5) as camera,
     capture.Recorder(folder) as recorder,
   ):
     rollout = rollout_lib.run(scene, 'klt', [camera, recorder])
   verdict = evaluator.evaluate(scene, rollout)
-  origin = provenance.Provenance.of('waggle x', rollout.renderer, began)
+  origin = provenance.Start.now('waggle x').end(rollout.renderer)
   writer.write_run(folder, scene, 'klt', rollout, verdict, origin)
   run_page.write(folder)
   return Recorded(folder, scene, rollout, verdict)

@@ -1,7 +1,6 @@
 """The page of a run names the limits of the receiver that made it."""
 
 import dataclasses
-import datetime
 import html
 import pathlib
 import re
@@ -53,10 +52,9 @@ def runs(
   made = {}
   for name in NAMES:
     folder = tmp_path_factory.mktemp('run')
-    began = datetime.datetime.now(datetime.UTC)
     rollout = rollout_lib.run(scene, name)
     verdict = evaluator.evaluate(scene, rollout)
-    origin = provenance.Provenance.of('waggle x', rollout.renderer, began)
+    origin = provenance.Start.now('waggle x').end(rollout.renderer)
     writer.write_run(folder, scene, name, rollout, verdict, origin)
     run_page.write(folder)
     page = (folder / document.NAME).read_text(encoding='utf-8')

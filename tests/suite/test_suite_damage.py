@@ -137,10 +137,10 @@ def test_results_of_other_sources_are_run_anew_with_a_notice(
   monkeypatch: pytest.MonkeyPatch,
   capsys: pytest.CaptureFixture[str],
 ) -> None:
-  here = provenance.source_hashes()
+  here = provenance.deciding_hashes()
   notice = f'blink: .*anew.* {ELSEWHERE}'
   with monkeypatch.context() as patch:
-    patch.setattr(provenance, 'source_hashes', lambda: here | {'x.py': '0'})
+    patch.setattr(provenance, 'deciding_hashes', lambda: here | {'x.py': '0'})
     (there,) = blink.run()
   assert re.search(notice, capsys.readouterr().out)
   (row,) = blink.run()
@@ -152,9 +152,9 @@ def test_results_of_other_sources_are_run_anew_with_a_notice(
 def test_sources_that_change_meanwhile_are_an_error(
   fresh_blink: object, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-  here = provenance.source_hashes()
+  here = provenance.deciding_hashes()
   seen = [here, here | {'waggle_tasks/new.py': '0'}]
-  monkeypatch.setattr(provenance, 'source_hashes', lambda: seen.pop(0))
+  monkeypatch.setattr(provenance, 'deciding_hashes', lambda: seen.pop(0))
   with pytest.raises(
     provenance.SourceError, match='sources must not change while a suite runs'
   ):

@@ -168,8 +168,8 @@ def test_results_of_other_sources_are_flown_anew(
   sweep: object, engine: sweep_runner.Engine, monkeypatch: pytest.MonkeyPatch
 ) -> None:
   sweep.run()
-  here = provenance.source_hashes()
-  monkeypatch.setattr(provenance, 'source_hashes', lambda: here | {'x': '0'})
+  here = provenance.deciding_hashes()
+  monkeypatch.setattr(provenance, 'deciding_hashes', lambda: here | {'x': '0'})
   with pytest.raises(Ended):
     sweep.run(ending(2, engine))
   assert len(journal.read(sweep.journal)) == 4 + 2
@@ -178,9 +178,9 @@ def test_results_of_other_sources_are_flown_anew(
 def test_sources_that_change_meanwhile_are_refused(
   sweep: object, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-  here = provenance.source_hashes()
+  here = provenance.deciding_hashes()
   seen = [here, here | {'x': '0'}]
-  monkeypatch.setattr(provenance, 'source_hashes', lambda: seen.pop(0))
+  monkeypatch.setattr(provenance, 'deciding_hashes', lambda: seen.pop(0))
   error = 'sources must not change while a sweep runs: run it again'
   with pytest.raises(provenance.SourceError, match=error):
     sweep.run()
