@@ -161,7 +161,9 @@ class StagedReceiver:
     )
     self._liveness = liveness.Liveness(config.stillness.max_stale_s)
     self._sight = sight.Sight()
-    self._parser = frame.Parser(rules=config.framing, clock=clock)
+    self._parser = frame.Parser(
+      units=agreement.units, rules=config.framing, clock=clock
+    )
     self._images = inputs.Images()
     self._where: tuple[float | None, float | None] = None, None
     self.track: klt.Track | None = None

@@ -58,7 +58,8 @@ def messages(events: Iterable[Symbol]) -> list[str]:
 
 
 def whole(bits: str) -> list[Symbol]:
-  return [*frame.events(payload.Payload.from_bits(bits))]
+  motions = [START, *map(Symbol, bits), END]
+  return [NULL, *(event for motion in motions for event in (motion, NULL))]
 
 
 def reasons(events: Iterable[Symbol]) -> list[str]:
@@ -93,6 +94,25 @@ def test_every_payload_is_accepted_with_its_final_null_and_not_before(
 # put in and then damaged.
 SYMBOLS = st.sampled_from([*Symbol])
 BITS = st.text('01', min_size=6, max_size=6)
+
+
+@pytest.mark.parametrize(
+  'units',
+  [
+    payload.Units(heading_bits=1, distance_bits=1),
+    payload.Units(heading_bits=6, distance_bits=5),
+  ],
+)
+def test_a_frame_has_the_agreed_number_of_bits(units: payload.Units) -> None:
+  message = payload.Payload.from_int(2**units.num_bits - 2, units)
+  parser, read = frame.Parser(units=units), []
+  for bits in ('000010', message.bits, message.bits + '0'):
+    for event in whole(bits):
+      parser, outcome = parser.step(event)
+      if isinstance(outcome, frame.Message):
+        read.append(outcome.payload)
+  assert read == [message]
+  assert len(frame.events(message)) == 2 * (units.num_bits + 2) + 1
 
 
 @st.composite

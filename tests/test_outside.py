@@ -17,6 +17,7 @@ from waggle_tasks import registry, scenario
 from waggle_tasks.agents import receivers
 from waggle_tasks.experiments.episodes import identity as identity_lib
 from waggle_tasks.experiments.episodes import outside
+from waggle_tasks.experiments.pages import run_page
 from waggle_tasks.experiments.record import (
   encoding,
   provenance,
@@ -25,6 +26,7 @@ from waggle_tasks.experiments.record import (
   writer,
 )
 from waggle_tasks.experiments.studies import (
+  pool,
   suite_runner,
   sweep_cases,
   sweep_runner,
@@ -242,9 +244,11 @@ def test_what_has_no_source_is_refused(
   error = r'^Mine decides results and must come from a file, .*import it$'
   with pytest.raises(source_files.UnknownSourceError, match=error):
     identity()
-  for run in (sweep_runner.run, suite_runner.run):
-    with pytest.raises(source_files.UnknownSourceError, match=error):
-      run(cases, 'mine', tmp_path / 'results', 1, 'waggle sweep')
+  folder, line = tmp_path / 'results', 'waggle x'
+  with pytest.raises(source_files.UnknownSourceError, match=error):
+    sweep_runner.run(cases, 'mine', folder, pool.run, line)
+  with pytest.raises(source_files.UnknownSourceError, match=error):
+    suite_runner.run(cases, 'mine', folder, 1, line, run_page.leave)
   assert not (tmp_path / 'results').exists()
 
 

@@ -1,4 +1,4 @@
-"""The six bits d|hhh|rr and the displacement that they command."""
+"""The bits of a payload and the displacement that they command."""
 
 from collections.abc import Callable
 import dataclasses
@@ -29,6 +29,28 @@ def test_the_papers_payloads_command_the_papers_displacements(
 ) -> None:
   got = payload.Payload.from_bits(bits).displacement_m()
   np.testing.assert_allclose(got, displacement_m, atol=2e-4)
+
+
+FINE = payload.Units(math.tau / 64, 0.02, heading_bits=6, distance_bits=5)
+
+
+@pytest.mark.parametrize('bits', ['0' * 12, '110100110101', '1' * 12])
+def test_a_payload_may_have_finer_fields(bits: str) -> None:
+  message = payload.Payload.from_bits(bits, FINE)
+  assert message.bits == bits
+  assert payload.Payload.from_int(int(bits, 2), FINE) == message
+  away_m = message.displacement_m(FINE)
+  reach_m, turn_rad = 0.02 * int(bits[7:], 2), math.tau * int(bits[1:7], 2) / 64
+  back = -1 if bits[0] == '1' else 1
+  ahead = np.array([-math.sin(turn_rad), math.cos(turn_rad), 0])
+  np.testing.assert_allclose(away_m, back * reach_m * ahead, atol=1e-9)
+  assert np.linalg.norm(away_m) <= FINE.reach_m + 1e-9
+
+
+def test_bits_of_another_number_are_refused_with_the_agreed_number() -> None:
+  error = "`payload` must be 12 characters of 0 and 1, such as '000000000010'"
+  with pytest.raises(payload.PayloadError, match=error):
+    payload.Payload.from_bits('000010', FINE)
 
 
 @pytest.mark.parametrize('value', ALL)

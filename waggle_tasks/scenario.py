@@ -63,7 +63,7 @@ class Scenario:
     bearing_deg: Angle by which the middle of the arc is turned about the
       performer, -180 to 180; one observer is there.
     spacing_m: Distance between neighbours in a line; the paper gives none.
-    payload: Six bits, d|hhh|rr.
+    payload: Its bits, d|hhh|rr in the paper, as many as `units` say.
     jitter_m: Bound of the initial x and y offset of every vehicle.
     seed: Of the environment's random state.
     black_observer: Which observer sees black images ('black_input').
@@ -73,7 +73,7 @@ class Scenario:
     codebook: The agreed gestures.
     pauses: The agreed pauses.
     tolerance: How far from its time a motion may be seen.
-    units: The agreed heading step and distance unit.
+    units: The agreed fields of the payload.
     appearance: How the room looks.
     surroundings: What else moves in it.
     drift: How far vehicles wander from where they should be.
@@ -135,15 +135,13 @@ class Scenario:
       del bounds['duration_s']
     checks.settle_numbers(self, bounds, ScenarioError)
     limits.check_codebook(self.codebook)
-    payload_lib.Payload.from_bits(self.payload)
-    longest = payload_lib.Payload.from_bits('000011')
-    reach_m = math.hypot(*longest.displacement_m(self.units))
-    self.surroundings.check(self.poses(), reach_m)
+    payload_lib.Payload.from_bits(self.payload, self.units)
+    self.surroundings.check(self.poses(), self.units.reach_m)
 
   @property
   def message(self) -> payload_lib.Payload:
     """The payload."""
-    return payload_lib.Payload.from_bits(self.payload)
+    return payload_lib.Payload.from_bits(self.payload, self.units)
 
   @property
   def agreement(self) -> agreement_lib.Agreement:

@@ -20,8 +20,6 @@ from waggle_tasks.tasks import progress, safety
 
 # A message is eight motions between nine nulls (paper, section 'Motion
 # alphabet and message framing').
-NUM_EVENTS = 17
-NUM_NULLS = 9
 
 
 def expected_bits(scene: scenario.Scenario, number: int) -> str | None:
@@ -34,14 +32,12 @@ def expected_bits(scene: scenario.Scenario, number: int) -> str | None:
 
 
 def expected_displacement_m(scene: scenario.Scenario) -> np.ndarray:
-  """Where the sent bits lead, (3,) metres: equations 1 and 2, by a table."""
-  bits = scene.payload
-  steps = [int(bit) for bit in bits]
-  turn_rad = (4 * steps[1] + 2 * steps[2] + steps[3]) * (
-    scene.units.heading_step_rad
-  )
-  reach_m = (2 * steps[4] + steps[5]) * scene.units.distance_unit_m
-  forward = reach_m if steps[0] == 0 else -reach_m
+  """Where the sent bits lead, (3,) metres: equations 1 and 2, from the text."""
+  bits, units = scene.payload, scene.units
+  split = 1 + units.heading_bits
+  turn_rad = int(bits[1:split], 2) * units.heading_step_rad
+  reach_m = int(bits[split:], 2) * units.distance_unit_m
+  forward = reach_m if bits[0] == '0' else -reach_m
   # Heading zero is +Y, and a counterclockwise turn leads towards -X.
   return forward * np.array([-math.sin(turn_rad), math.cos(turn_rad), 0.0])
 
@@ -97,8 +93,8 @@ def _judge_reading(
       failures=(*found, *failures), diagnosis=why,
     )  # fmt: skip
   seen = [e for e in events if isinstance(e, receiver.Event)]
-  frame_events = seen[: seen.index(message) + 1][-NUM_EVENTS:]
-  failures += _frame(frame_events, decoded)
+  seen = seen[: seen.index(message) + 1]
+  failures += _frame(seen, decoded)
   if decoded != expected:
     failures.append(f'message: read {decoded}, sent {expected}')
     failures += reasons.find(scene, rollout, name)
@@ -117,7 +113,7 @@ def _judge_reading(
   failures += flown.pop('failures')
   return verdicts.Outcome(
     name, expected, decoded,
-    end_s=_end_s(frame_events),
+    end_s=_end_s(seen),
     final_null_s=final_null_s, start_s=start_s,
     failures=tuple(failures), **flown,
   )  # fmt: skip
@@ -169,13 +165,14 @@ def _early_motion(
 
 
 def _frame(events: Sequence[receiver.Event], bits: str) -> list[str]:
-  """Whether the events are the whole frame of a message, one by one."""
-  seen = [str(event.symbol) for event in events]
+  """Whether the last events are the whole frame of a message, one by one."""
   motions = ['START', *bits, 'END']
-  if seen[1::2] == motions and seen[::2] == ['NULL'] * NUM_NULLS:
+  nulls = len(motions) + 1
+  seen = [str(event.symbol) for event in events[-len(motions) - nulls :]]
+  if seen[1::2] == motions and seen[::2] == ['NULL'] * nulls:
     return []
   return [
-    f'frame: not the {NUM_EVENTS} events of {bits} with their {NUM_NULLS}'
+    f'frame: not the {len(motions) + nulls} events of {bits} with their {nulls}'
     f' nulls: {" ".join(seen)}'
   ]
 

@@ -66,6 +66,8 @@ _HELP = {
   'gesture_s': 'Time that a gesture takes, in s.',
   'heading_step_deg': 'Angle of one heading count, in degrees.',
   'distance_unit_m': 'Length of one distance count, in m.',
+  'heading_bits': "Bits of the payload's heading.",
+  'distance_bits': "Bits of the payload's distance.",
 }
 _CHOICES = {
   'control': scenario.CONTROLS,

@@ -152,8 +152,8 @@ def _changes(run: archive.Run) -> markup.Markup | None:
 def describe(run: archive.Run) -> str:
   """The scenario in a line."""
   scene = run.scenario
-  bits = payload.Payload.from_bits(scene['payload'])
   units = payload.Units(**scene['units'])
+  bits = payload.Payload.from_bits(scene['payload'], units)
   turn_deg = bits.heading * math.degrees(units.heading_step_rad)
   way = 'backward' if bits.direction else 'forward'
   reach_m = bits.distance * units.distance_unit_m

@@ -72,7 +72,9 @@ class Run:
   def sent(self) -> tuple[story.Sent, ...]:
     """What the performer flew."""
     scene = self.scenario
-    bits = payload.Payload.from_bits(scene['payload'])
+    bits = payload.Payload.from_bits(
+      scene['payload'], payload.Units(**scene['units'])
+    )
     known = self.agreement
     dance = decoys.dance(
       scene['control'], bits, scene['seed'], known.codebook, known.pauses
@@ -103,7 +105,7 @@ def load(folder: pathlib.Path) -> Run:
     config,
     result,
     read_json(folder / 'provenance.json'),
-    read_events(folder / 'events.jsonl', names),
+    read_events(folder / 'events.jsonl', names, read_agreement(config).units),
     traces_lib.load(folder / TRACES),
     positions_m.pop('times_s'),
     positions_m,
@@ -151,13 +153,16 @@ def read_agreement(config: Mapping) -> agreement_lib.Agreement:
 
 
 def read_events(
-  path: pathlib.Path, names: list[str]
+  path: pathlib.Path,
+  names: list[str],
+  units: payload.Units = payload.Units(),
 ) -> dict[str, tuple[episode.Event, ...]]:
   """Reads an event log.
 
   Args:
     path: events.jsonl.
     names: The observers, also those without events.
+    units: The agreed fields of the payload.
 
   Raises:
     ArchiveError: naming the line that is damaged.
@@ -170,7 +175,8 @@ def read_events(
   for number, line in enumerate(lines, 1):
     try:
       row = json.loads(line)
-      events[row.pop('observer')].append(_MAKERS[row.pop('kind')](row))
+      make = _MAKERS[row.pop('kind')]
+      events[row.pop('observer')].append(make(row, units))
     except (ValueError, KeyError, TypeError) as error:
       raise ArchiveError(
         f'{path} is damaged in line {number}: {error}'
@@ -178,10 +184,10 @@ def read_events(
   return {name: tuple(each) for name, each in events.items()}
 
 
-def _event(row: dict[str, Any]) -> receiver.Event:
+def _event(row: dict[str, Any], units: payload.Units) -> receiver.Event:
   row['symbol'], row['state'] = Symbol(row['symbol']), frame.State(row['state'])
   if row['message'] is not None:
-    row['message'] = payload.Payload.from_bits(row['message'])
+    row['message'] = payload.Payload.from_bits(row['message'], units)
   if row['recognition'] is not None:
     scores = dict(row['recognition'])
     for field in ('symbol', 'best'):
@@ -190,18 +196,20 @@ def _event(row: dict[str, Any]) -> receiver.Event:
   return receiver.Event(**row)
 
 
-def _navigation(row: dict[str, Any]) -> observer_agent.Navigation:
+def _navigation(
+  row: dict[str, Any], units: payload.Units
+) -> observer_agent.Navigation:
   row['deed'] = observer_agent.Deed(row['deed'])
   row['target_m'] = tuple(row['target_m'])
-  row['payload'] = payload.Payload.from_bits(row['payload'])
+  row['payload'] = payload.Payload.from_bits(row['payload'], units)
   return observer_agent.Navigation(**row)
 
 
 # By the `kind` of a line, see `writer.event_lines`.
-_MAKERS: dict[str, Callable[[dict[str, Any]], episode.Event]] = {
+_MAKERS: dict[str, Callable[[dict[str, Any], payload.Units], episode.Event]] = {
   'event': _event,
   'navigation': _navigation,
-  'refusal': lambda row: safety.Refusal(**row),
+  'refusal': lambda row, _: safety.Refusal(**row),
 }
 
 

@@ -41,6 +41,8 @@ def defaults() -> dict[str, Any]:
     **gesture,
     'heading_step_deg': math.degrees(units.heading_step_rad),
     'distance_unit_m': units.distance_unit_m,
+    'heading_bits': units.heading_bits,
+    'distance_bits': units.distance_bits,
   }
 
 
@@ -58,7 +60,10 @@ def make(values: Values) -> scenario.Scenario:
     rest.pop('half_width_m'), rest.pop('start_height_m'), rest.pop('gesture_s')
   )
   units = payload.Units(
-    math.radians(rest.pop('heading_step_deg')), rest.pop('distance_unit_m')
+    math.radians(rest.pop('heading_step_deg')),
+    rest.pop('distance_unit_m'),
+    rest.pop('heading_bits'),
+    rest.pop('distance_bits'),
   )
   groups: dict[str, Any] = {}
   for group, kind in GROUPS.items():

@@ -14,7 +14,7 @@ from waggle_tasks.protocol import checks
 
 RANDOM, ALL = 'random', 'all'
 MAX_CASES = 1_000_000
-_PAYLOAD_BITS = 6
+_MOST_BITS = 10  # Of payloads that are flown all.
 
 
 class SweepError(errors.WaggleError):
@@ -52,8 +52,8 @@ def grid(texts: Sequence[str]) -> dict[str, list[object]]:
   """The factors of a sweep.
 
   Args:
-    texts: Such as 'distance_m=0.6,0.8'; for the payload 'payload=all' stands
-      for all 64.
+    texts: Such as 'distance_m=0.6,0.8'; 'payload=all' stands for all there
+      are.
 
   Returns:
     The values of each factor, by its name in `scenario_fields`.
@@ -73,10 +73,6 @@ def grid(texts: Sequence[str]) -> dict[str, list[object]]:
     if name in out:
       raise SweepError(f'`grid` must name a field once: got {name} again')
     values = [scenario_fields.parse(name, each) for each in listed.split(',')]
-    if name == 'payload' and listed == ALL:
-      values = [
-        f'{number:0{_PAYLOAD_BITS}b}' for number in range(2**_PAYLOAD_BITS)
-      ]
     if len(set(values)) < len(values):
       raise SweepError(f'`grid` must give a value once: got {text!r}')
     out[name] = values
@@ -92,7 +88,7 @@ def cases(
 
   Each case has a seed of its own: 32 bits of a SHA-256 of the repeat and of all
   values of its scenario that are not the defaults, the base's seed among them.
-  A random payload comes from six other bits of it. So more factors, values or
+  A random payload comes from other bits of it. So more factors, values or
   repeats leave the other cases as they are, and two sweeps never share a case
   unless it is the same scenario.
 
@@ -107,6 +103,8 @@ def cases(
       error names its cell.
   """
   checks.integer('repeats', repeats, 1, MAX_CASES, SweepError)
+  if list(factors.get('payload', ())) == [ALL]:
+    factors = {**factors, 'payload': _all_payloads(factors, base)}
   count = math.prod(map(len, factors.values())) * repeats
   if count > MAX_CASES:
     raise SweepError(
@@ -122,6 +120,25 @@ def cases(
   return tuple(out)
 
 
+def _all_payloads(
+  factors: Mapping[str, Sequence[object]], base: Mapping[str, Any]
+) -> list[str]:
+  fixed = [
+    name for name in ('heading_bits', 'distance_bits') if name in factors
+  ]
+  bits = _num_bits(base)
+  if fixed or bits > _MOST_BITS:
+    raise SweepError(
+      f'`grid` may hold payload=all for at most {_MOST_BITS} bits, and not'
+      f' beside other numbers of bits: got {fixed or bits}'
+    )
+  return [f'{number:0{bits}b}' for number in range(2**bits)]
+
+
+def _num_bits(values: Mapping[str, Any]) -> int:
+  return 1 + values['heading_bits'] + values['distance_bits']
+
+
 def _case(
   cell: Mapping[str, Any], base: Mapping[str, Any], repeat: int
 ) -> Case:
@@ -129,8 +146,9 @@ def _case(
   drawn = hashlib.sha256(_seed_text(values, repeat).encode()).digest()
   values['seed'] = int.from_bytes(drawn[:4], 'big')
   if values['payload'] == RANDOM:
-    number = drawn[4] % 2**_PAYLOAD_BITS
-    values['payload'] = f'{number:0{_PAYLOAD_BITS}b}'
+    bits = _num_bits(values)
+    number = int.from_bytes(drawn[4:], 'little') % 2**bits
+    values['payload'] = f'{number:0{bits}b}'
   return Case(cell, repeat, values, scenario_fields.make(values))
 
 

@@ -32,7 +32,7 @@ def no_pyav(monkeypatch: pytest.MonkeyPatch) -> None:
   monkeypatch.setitem(sys.modules, 'av', None)
   name = 'waggle_tasks.experiments.video.pyav_film'
   monkeypatch.delitem(sys.modules, name, raising=False)
-  package = sys.modules['waggle_tasks.experiments']
+  package = sys.modules['waggle_tasks.experiments.video']
   monkeypatch.delattr(package, 'pyav_film', raising=False)
 
 

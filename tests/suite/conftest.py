@@ -9,6 +9,7 @@ import shutil
 import pytest
 
 from waggle_tasks import suites
+from waggle_tasks.experiments.pages import run_page
 from waggle_tasks.experiments.studies import suite_runner
 
 # The longest comes first to the workers, the shortest to the table.
@@ -51,7 +52,9 @@ class Own:
   def run(self, workers: int = 1) -> list[dict[str, object]]:
     """Runs what is missing."""
     cases = suites.from_rows(self.rows)
-    return suite_runner.run(cases, 'klt', self.folder, workers, self.command)
+    return suite_runner.run(
+      cases, 'klt', self.folder, workers, self.command, run_page.leave
+    )
 
   def results(self) -> dict[str, bytes]:
     """Every file that must repeat bit for bit."""

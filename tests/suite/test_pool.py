@@ -20,7 +20,7 @@ PARENT = """
 import pathlib, sys
 sys.path.insert(0, {here!r})
 import pool_jobs
-from waggle_tasks.experiments import pool
+from waggle_tasks.experiments.studies import pool
 
 if __name__ == '__main__':
   job = pool.Job('long', pool_jobs.chatter, (pathlib.Path({tries!r}), 60.0))

@@ -65,7 +65,7 @@ def test_a_case_says_what_made_it(reference: object) -> None:
   assert origin['versions'] == provenance.versions()
   assert origin['renderer']
   assert origin['began'] <= origin['ended']
-  name = 'waggle_tasks.experiments/studies/suite_runner.py'
+  name = 'waggle_tasks.experiments.studies.suite_runner'
   assert re.fullmatch('[0-9a-f]{64}', origin['sources'][name])
 
 

@@ -38,8 +38,8 @@ needs_ipv6 = pytest.mark.skipif(not IPV6, reason='needs IPv6')
 # Dask warns of much; a process of its own keeps its threads and logs apart.
 FLY = """
 import functools, pathlib, sys
-from waggle_tasks.experiments import (
-  cluster, scenario_fields, sweep_cases, sweep_runner)
+from waggle_tasks.experiments.record import scenario_fields
+from waggle_tasks.experiments.studies import cluster, sweep_cases, sweep_runner
 receiver, folder, scheduler, *grid = sys.argv[1:]
 base = scenario_fields.defaults() | {
   'control': 'no_send', 'duration_s': 1.0, 'observers': 1}
@@ -307,7 +307,7 @@ def test_a_scheduler_that_goes_away_as_a_result_is_fetched_is_told(
 LOST = """
 import os, pathlib, signal, sys, time
 from waggle_tasks import errors
-from waggle_tasks.experiments import cluster, pool
+from waggle_tasks.experiments.studies import cluster, pool
 
 scheduler, number, pid = sys.argv[1:]
 address = cluster.find(scheduler)

@@ -28,7 +28,7 @@ def test_no_field_of_a_group_hides_another() -> None:
   ]
   made = [
     'half_width_m', 'start_height_m', 'gesture_s', 'heading_step_deg',
-    'distance_unit_m',
+    'distance_unit_m', 'heading_bits', 'distance_bits',
   ]  # fmt: skip
   names = [*plain, *grouped, *made]
   assert len(set(names)) == len(names)

@@ -113,6 +113,11 @@ def test_all_payloads_can_be_asked_for(make: Make) -> None:
     ),
     (['payload=random,all'], 'cell payload=all: `payload` must be 6'),
     (
+      ['payload=all', 'heading_bits=3,4'],
+      '`grid` may hold payload=all for at most 10 bits, and not beside other'
+      " numbers of bits: got ['heading_bits']",
+    ),
+    (
       ['distance_m=' + ','.join(str(1 + n / 10000) for n in range(1001)),
        'gap_s=' + ','.join(str(2 + n / 10000) for n in range(1000))],
       '`grid` and `repeats` must make at most 1000000 cases: got 1001000',

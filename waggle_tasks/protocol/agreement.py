@@ -15,7 +15,7 @@ class Agreement:
     codebook: The gestures.
     pauses: The rests between them.
     tolerance: How far from its time a motion may be seen.
-    units: What a count of the payload's fields means.
+    units: The payload's fields, and what a count of each means.
     camera: What observers see with.
   """
 

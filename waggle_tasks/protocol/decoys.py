@@ -171,75 +171,77 @@ def _timed(corners: Sequence[np.ndarray], rng: np.random.RandomState) -> Figure:
   return Figure(np.array(corners), max(leg_s, slowest_s))
 
 
-def _bits(rng: np.random.RandomState) -> list[Symbol]:
-  return [BITS[rng.randint(2)] for _ in range(payload.NUM_BITS)]
+def _bits(rng: np.random.RandomState, count: int) -> list[Symbol]:
+  return [BITS[rng.randint(2)] for _ in range(count)]
 
 
-def _swapped(rng: np.random.RandomState) -> list[Symbol]:
-  """The eight symbols of a message in an order that is none."""
+def _swapped(rng: np.random.RandomState, count: int) -> list[Symbol]:
+  """The symbols of a message in an order that is none."""
   if rng.randint(2):
-    return [Symbol.END, *_bits(rng), Symbol.START]
-  motions = [Symbol.START, *_bits(rng), Symbol.END]
+    return [Symbol.END, *_bits(rng, count), Symbol.START]
+  motions = [Symbol.START, *_bits(rng, count), Symbol.END]
   while motions[0] is Symbol.START and motions[-1] is Symbol.END:
     rng.shuffle(motions)
   return [Symbol(each) for each in motions]
 
 
-def _repeated(rng: np.random.RandomState) -> list[Symbol]:
+def _repeated(rng: np.random.RandomState, count: int) -> list[Symbol]:
   """A bit too many, or everything twice and too few bits."""
-  bits = _bits(rng)
+  bits = _bits(rng, count)
   if rng.randint(2):
-    twice = rng.randint(payload.NUM_BITS)
+    twice = rng.randint(count)
     return [Symbol.START, *bits[: twice + 1], *bits[twice:], Symbol.END]
   once = [Symbol.START, *bits[:2], Symbol.END]
   return [each for symbol in once for each in (symbol, symbol)]
 
 
-def _half_frame(rng: np.random.RandomState) -> list[Symbol]:
+def _half_frame(rng: np.random.RandomState, count: int) -> list[Symbol]:
   """The first half of a message, and then of another one."""
-  bits, half = _bits(rng), payload.NUM_BITS // 2
+  bits, half = _bits(rng, count), count // 2
   return [Symbol.START, *bits[:half], Symbol.START, *bits[half:]]
 
 
-def _five_bits(rng: np.random.RandomState) -> list[Symbol]:
+def _five_bits(rng: np.random.RandomState, count: int) -> list[Symbol]:
   """A message with a bit too few."""
-  return [Symbol.START, *_bits(rng)[1:], Symbol.END]
+  return [Symbol.START, *_bits(rng, count)[1:], Symbol.END]
 
 
-def _seven_bits(rng: np.random.RandomState) -> list[Symbol]:
-  """A message with a bit too many: with one hidden, six are left."""
-  return [Symbol.START, *_bits(rng), BITS[rng.randint(2)], Symbol.END]
+def _seven_bits(rng: np.random.RandomState, count: int) -> list[Symbol]:
+  """A message with a bit too many: with one hidden, a message is left."""
+  return [Symbol.START, *_bits(rng, count), BITS[rng.randint(2)], Symbol.END]
 
 
-def _split(rng: np.random.RandomState) -> tuple[list[Symbol], list[Symbol]]:
-  """Six bits in two parts, neither of them empty."""
-  bits, first = _bits(rng), rng.randint(1, payload.NUM_BITS)
+def _split(
+  rng: np.random.RandomState, count: int
+) -> tuple[list[Symbol], list[Symbol]]:
+  """The bits of a message in two parts, neither of them empty."""
+  bits, first = _bits(rng, count), rng.randint(1, count)
   return bits[:first], bits[first:]
 
 
-def _begun_anew(rng: np.random.RandomState) -> list[Symbol]:
-  """Broken off and begun anew: with the second START hidden, six bits."""
-  before, after = _split(rng)
+def _begun_anew(rng: np.random.RandomState, count: int) -> list[Symbol]:
+  """Broken off and begun anew: a message, with the second START hidden."""
+  before, after = _split(rng, count)
   return [Symbol.START, *before, Symbol.START, *after, Symbol.END]
 
 
-def _run_together(rng: np.random.RandomState) -> list[Symbol]:
-  """Two short dances: with the end and START between hidden, six bits."""
-  before, after = _split(rng)
+def _run_together(rng: np.random.RandomState, count: int) -> list[Symbol]:
+  """Two short dances: a message, with END and START between them hidden."""
+  before, after = _split(rng, count)
   first = [Symbol.START, *before, Symbol.END]
   return [*first, Symbol.START, *after, Symbol.END]
 
 
-def _start_repeated(rng: np.random.RandomState) -> list[Symbol]:
+def _start_repeated(rng: np.random.RandomState, count: int) -> list[Symbol]:
   """START again and again, and a bit too few."""
   starts = [Symbol.START] * rng.randint(2, 4)
-  return [*starts, *_bits(rng)[1:], Symbol.END]
+  return [*starts, *_bits(rng, count)[1:], Symbol.END]
 
 
-def _end_first(rng: np.random.RandomState) -> list[Symbol]:
+def _end_first(rng: np.random.RandomState, count: int) -> list[Symbol]:
   """END where START should be, and sometimes START where END should be."""
   last = (Symbol.START, Symbol.END)[rng.randint(2)]
-  return [Symbol.END, *_bits(rng), last]
+  return [Symbol.END, *_bits(rng, count), last]
 
 
 _FIGURE_MAKERS = {
@@ -267,6 +269,7 @@ def perform(
   seed: int,
   codebook: gestures.Codebook,
   pauses: timing.Timing,
+  num_bits: int = payload.Units().num_bits,
 ) -> schedule.Schedule:
   """A decoy laid out in time.
 
@@ -275,6 +278,7 @@ def perform(
     seed: Each gives another performance of the same kind.
     codebook: The agreed gestures.
     pauses: The agreed pauses.
+    num_bits: How many bits a message has.
 
   Returns:
     The schedule.
@@ -282,7 +286,7 @@ def perform(
   rng = np.random.RandomState(seed)
   if name in _FIGURE_MAKERS:
     return schedule.lay_out(_FIGURE_MAKERS[name](rng), pauses)
-  symbols = tuple(_FRAME_MAKERS[name](rng))
+  symbols = tuple(_FRAME_MAKERS[name](rng, num_bits))
   return schedule.broadcast(symbols, codebook, pauses)
 
 
@@ -295,5 +299,5 @@ def dance(
 ) -> schedule.Schedule:
   """What a scenario's performer flies: its message, or a decoy of `seed`."""
   if control in DECOYS:
-    return perform(control, seed, codebook, pauses)
+    return perform(control, seed, codebook, pauses, len(message.bits))
   return schedule.broadcast(frame.motions(message), codebook, pauses)

@@ -1,4 +1,4 @@
-"""The 17-event frame and the state machine that accepts only whole ones."""
+"""The frame, of 17 events in the paper, and the parser of whole ones alone."""
 
 import dataclasses
 import enum
@@ -15,13 +15,13 @@ class FrameError(errors.WaggleError):
 
 
 def motions(payload: payload_lib.Payload) -> tuple[Symbol, ...]:
-  """The eight motion symbols of a message: START, six bits, END."""
+  """The motion symbols of a message: START, its bits, END."""
   bits = tuple(Symbol(bit) for bit in payload.bits)
   return (Symbol.START, *bits, Symbol.END)
 
 
 def events(payload: payload_lib.Payload) -> tuple[Symbol, ...]:
-  """The 17 visual events of a message: 8 motions between 9 nulls."""
+  """The visual events of a message: 8 motions between 9 nulls for six bits."""
   out = [Symbol.NULL]
   for symbol in motions(payload):
     out += [symbol, Symbol.NULL]
@@ -86,14 +86,15 @@ class Rules:
 class Parser:
   """A frame parser as a value: `step` returns the next one and an outcome.
 
-  By the paper's rules a message is accepted if and only if the last 17 events
-  are a whole frame (section 'Motion alphabet and message framing'). With a
-  clock each of them must also have come in its time, and nothing may have been
-  hidden meanwhile.
+  By the paper's rules a message is accepted if and only if the last events, 17
+  of them for six bits, are a whole frame (section 'Motion alphabet and message
+  framing'). With a clock each of them must also have come in its time, and
+  nothing may have been hidden meanwhile.
 
   Attributes:
     state: What it waits for.
     bits: The bits read since START.
+    units: How many bits a payload has.
     rules: Which nulls it demands.
     clock: When motions come; None for a parser that knows order alone.
     moments: With a clock, when the motions since START were.
@@ -101,6 +102,7 @@ class Parser:
 
   state: State = State.LEAD_NULL
   bits: str = ''
+  units: payload_lib.Units = payload_lib.Units()
   rules: Rules = Rules()
   clock: clock_lib.Clock | None = None
   moments: tuple[clock_lib.Moment, ...] = ()
@@ -212,10 +214,10 @@ class Parser:
     return self._at(self._next_motion(bits), bits)
 
   def _next_motion(self, bits: str) -> State:
-    return State.END if len(bits) == payload_lib.NUM_BITS else State.BIT
+    return State.END if len(bits) == self.units.num_bits else State.BIT
 
   def _message(self) -> Message:
-    return Message(payload_lib.Payload.from_bits(self.bits))
+    return Message(payload_lib.Payload.from_bits(self.bits, self.units))
 
   def _restart(self, symbol: Symbol) -> 'Parser':
     """Where the next frame can begin, given the event that broke this one.
@@ -243,4 +245,4 @@ class Parser:
 
   @property
   def _progress(self) -> str:
-    return f'after {len(self.bits)} of {payload_lib.NUM_BITS} bits'
+    return f'after {len(self.bits)} of {self.units.num_bits} bits'

@@ -1,4 +1,4 @@
-"""The six payload bits d|hhh|rr and the displacement that they command."""
+"""The bits of a payload and the displacement that they command."""
 
 import dataclasses
 import math
@@ -8,80 +8,121 @@ import numpy as np
 from waggle_tasks import errors
 from waggle_tasks.protocol import checks
 
-NUM_BITS = 6
+_MOST_BITS = 12  # Of a field.
 
 
 class PayloadError(errors.WaggleError):
-  """A payload that is not six bits, or a field out of its range."""
+  """A payload of another number of bits, or a field out of its range."""
 
 
 @dataclasses.dataclass(frozen=True)
 class Units:
-  """What one count of the heading and the distance field means.
+  """How many bits the fields of a payload have, and what one count means.
+
+  The direction is one bit.
 
   Attributes:
     heading_step_rad: alpha of equation 1, pi/4 rad in the paper.
     distance_unit_m: u of equation 2, 0.2 m in the paper.
+    heading_bits: Bits of the heading, 3 in the paper, 1 to 12.
+    distance_bits: Bits of the distance, 2 in the paper, 1 to 12.
   """
 
   heading_step_rad: float = math.pi / 4
   distance_unit_m: float = 0.2
+  heading_bits: int = 3
+  distance_bits: int = 2
 
   def __post_init__(self) -> None:
     limits = {
       'heading_step_rad': (1e-3, math.pi),
       'distance_unit_m': (1e-3, 1.0),
+      'heading_bits': (1, _MOST_BITS),
+      'distance_bits': (1, _MOST_BITS),
     }
     checks.settle_numbers(self, limits, PayloadError)
+
+  @property
+  def num_bits(self) -> int:
+    """How many bits a payload has."""
+    return 1 + self.heading_bits + self.distance_bits
+
+  @property
+  def reach_m(self) -> float:
+    """The longest displacement that a payload can command."""
+    return (2**self.distance_bits - 1) * self.distance_unit_m
 
 
 @dataclasses.dataclass(frozen=True)
 class Payload:
-  """One of the 64 messages (paper, section 'Motion alphabet').
+  """One message: of 64 in the paper (section 'Motion alphabet').
 
   Attributes:
     direction: d, 0 forward or 1 backward.
-    heading: h, 0 to 7, counted counterclockwise from world +Y.
-    distance: r, 0 to 3 distance units.
+    heading: h, 0 to 7 in the paper, counterclockwise from world +Y.
+    distance: r, 0 to 3 distance units in the paper.
+    heading_bits: Bits of the heading.
+    distance_bits: Bits of the distance.
   """
 
   direction: int
   heading: int
   distance: int
+  heading_bits: int = 3
+  distance_bits: int = 2
 
   def __post_init__(self) -> None:
-    limits = {'direction': (0, 1), 'heading': (0, 7), 'distance': (0, 3)}
+    widths = {'heading_bits': (1, _MOST_BITS), 'distance_bits': (1, _MOST_BITS)}
+    checks.settle_numbers(self, widths, PayloadError)
+    limits = {
+      'direction': (0, 1),
+      'heading': (0, 2**self.heading_bits - 1),
+      'distance': (0, 2**self.distance_bits - 1),
+    }
     checks.settle_numbers(self, limits, PayloadError)
 
   @classmethod
-  def from_bits(cls, bits: str) -> 'Payload':
+  def from_bits(cls, bits: str, units: Units = Units()) -> 'Payload':
     """Reads a payload such as '000010'.
 
+    Args:
+      bits: Of the direction, the heading and the distance.
+      units: How many bits each has.
+
     Raises:
-      PayloadError: if `bits` is not six characters of 0 and 1.
+      PayloadError: if `bits` is not so many characters of 0 and 1.
     """
     is_bits = isinstance(bits, str) and not set(bits) - {*'01'}
-    if not is_bits or len(bits) != NUM_BITS:
+    if not is_bits or len(bits) != units.num_bits:
+      example = f'{2:0{units.num_bits}b}'
       raise PayloadError(
-        f'`payload` must be {NUM_BITS} characters of 0 and 1, such as'
-        f" '000010': got {bits!r}"
+        f'`payload` must be {units.num_bits} characters of 0 and 1, such as'
+        f' {example!r}: got {bits!r}'
       )
-    return cls(int(bits[0]), int(bits[1:4], 2), int(bits[4:], 2))
+    split = 1 + units.heading_bits
+    return cls(
+      int(bits[0]), int(bits[1:split], 2), int(bits[split:], 2),
+      units.heading_bits, units.distance_bits,
+    )  # fmt: skip
 
   @classmethod
-  def from_int(cls, value: int) -> 'Payload':
-    """Reads a payload from an integer 0 to 63, its first bit the highest.
+  def from_int(cls, value: int, units: Units = Units()) -> 'Payload':
+    """Reads a payload from an integer, 0 to 63 in the paper.
+
+    Its first bit is the highest.
 
     Raises:
-      PayloadError: if `value` is not an integer from 0 to 63.
+      PayloadError: if `value` is not an integer of so many bits.
     """
-    value = checks.integer('payload', value, 0, 2**NUM_BITS - 1, PayloadError)
-    return cls(value >> 5, value >> 2 & 0b111, value & 0b11)
+    most = 2**units.num_bits - 1
+    value = checks.integer('payload', value, 0, most, PayloadError)
+    return cls.from_bits(f'{value:0{units.num_bits}b}', units)
 
   @property
   def bits(self) -> str:
-    """The six bits as text, in the order in which they are flown."""
-    return f'{self.direction:01b}{self.heading:03b}{self.distance:02b}'
+    """The bits as text, in the order in which they are flown."""
+    heading = f'{self.heading:0{self.heading_bits}b}'
+    return f'{self.direction}{heading}{self.distance:0{self.distance_bits}b}'
 
   def __int__(self) -> int:
     return int(self.bits, 2)
