@@ -2,8 +2,9 @@
 
 From one default broadcast: composite.png is a picture of its composite video,
 gestures.png the four gestures as the middle observer sees them: the performer
-at equal times, and the track that the receiver made of it. With --sweep it
-flies nothing: envelope.png, and envelope.svg, are the maps of these sweeps.
+at equal times, and the track that the receiver made of it. With --sweep or
+--rooms it flies nothing: envelope.png, and envelope.svg, are the maps of these
+sweeps, and rooms.svg tells which part of this project imports which.
 """
 
 from collections.abc import Sequence
@@ -14,6 +15,8 @@ from absl import flags
 
 from waggle_tasks.experiments import launch
 from waggle_tasks.experiments.flags import receiver_flag
+from waggle_tasks.experiments.machine import files
+from waggle_tasks.experiments.pages import rooms
 from waggle_tasks.experiments.record import folders
 from waggle_tasks.experiments.results import envelope, figures, png
 from waggle_tasks.experiments.studies import sweep_results
@@ -24,6 +27,7 @@ _OUTPUT = flags.DEFINE_string(
 
 _RECEIVER = receiver_flag.define()
 _SWEEP = flags.DEFINE_list('sweep', [], 'Draw the envelope of these folders.')
+_ROOMS = flags.DEFINE_boolean('rooms', False, 'Draw the rooms of this project.')
 
 
 def main(argv: Sequence[str]) -> int:
@@ -33,6 +37,10 @@ def main(argv: Sequence[str]) -> int:
   folders.check_writable(folder)
   if _SWEEP.value:
     print(*_envelope(folder, _SWEEP.value), sep='\n')
+    return 0
+  if _ROOMS.value:
+    whole = rooms.draw(rooms.counts())
+    print(files.replace(folder / 'rooms.svg', f'{whole}\n'))
     return 0
   # Imported here: to draw maps, no simulator is needed.
   from waggle_tasks.experiments.video import shots

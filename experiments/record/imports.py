@@ -20,19 +20,28 @@ def of(module: str, path: pathlib.Path) -> dict[str, pathlib.Path]:
   Returns:
     By module name; those that are built in, or not there, are left out.
   """
-  if path.suffix != '.py' or not path.exists():
-    return {}
-  is_package = path.name == '__init__.py'
-  package = module if is_package else module.rpartition('.')[0]
   out: dict[str, pathlib.Path] = {}
-  for name in _names(path.read_bytes(), package):
+  for name in named(module, path):
     out |= _found(name)
   return out
 
 
+def named(module: str, path: pathlib.Path) -> tuple[str, ...]:
+  """The modules that a file may mean: `from a import b` may mean a.b.
+
+  Args:
+    module: Its name, for what it imports relative to itself.
+    path: Its file; only Python source is read.
+  """
+  if path.suffix != '.py' or not path.exists():
+    return ()
+  is_package = path.name == '__init__.py'
+  package = module if is_package else module.rpartition('.')[0]
+  return _names(path.read_bytes(), package)
+
+
 @functools.lru_cache(maxsize=256)
 def _names(source: bytes, package: str) -> tuple[str, ...]:
-  """The modules that may be meant: `from a import b` may mean a.b."""
   try:
     tree = ast.parse(source)
   except (SyntaxError, ValueError):

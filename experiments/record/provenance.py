@@ -32,6 +32,14 @@ def source_hashes() -> dict[str, str]:
 
   So they are the same from a checkout and from what was built of it.
   """
+  return {
+    name: hashlib.sha256(path.read_bytes()).hexdigest()
+    for name, path in source_paths().items()
+  }
+
+
+def source_paths() -> dict[str, pathlib.Path]:
+  """Every source file, by the name that it is imported under."""
   out = {}
   for package in (waggle_tasks, agents, arenas, entities, experiments):
     (place,) = package.__path__
@@ -39,7 +47,7 @@ def source_hashes() -> dict[str, str]:
     for path in sorted(folder.rglob('*.py')):
       parts = path.relative_to(folder).with_suffix('').parts
       name = '.'.join((package.__name__, *parts)).removesuffix('.__init__')
-      out[name] = hashlib.sha256(path.read_bytes()).hexdigest()
+      out[name] = path
   return out
 
 
