@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 
-from dm_control import composer
+from dm_control import composer, mjcf
 import numpy as np
 import pytest
 
@@ -113,6 +113,28 @@ def test_contact_ends_the_episode_with_discount_zero(
   assert environment.task.contacts == (('observer_1', 'room'),)
   assert environment.step(hover(steps[-1].observation)).first()
   assert environment.step(hover(steps[0].observation)).discount == 1
+
+
+def test_a_graze_of_milliseconds_within_a_step_counts(
+  load: Load, hover: Fixture
+) -> None:
+  environment = load('no_send', cameras=False, observers=1)
+  observations = environment.reset().observation
+  (vehicle,) = environment.task.observers
+  home_m = observations[0]['position_m'].copy()
+  low_m, substeps = np.array([*home_m[:2], 0.0]), []
+
+  def dip(physics: mjcf.Physics, *_: object) -> None:
+    substeps.append(physics.time())
+    place_m = low_m if len(substeps) == 3 else home_m
+    vehicle.set_pose(physics, position=place_m)
+    vehicle.set_velocity(physics, np.zeros(3), np.zeros(3))
+
+  environment.add_extra_hook('before_substep', dip)
+  timestep = environment.step(hover(observations))
+  assert len(substeps) == 10  # Each physics step of the control step.
+  assert timestep.discount == 0
+  assert environment.task.contacts == (('observer_1', 'room'),)
 
 
 def test_two_vehicles_that_touch_are_named(

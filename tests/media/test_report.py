@@ -300,6 +300,24 @@ def test_data_without_what_a_run_leaves_is_refused(
     run_page.write(copied)
 
 
+def test_a_page_that_cannot_be_drawn_loses_no_run(
+  copied: pathlib.Path,
+  monkeypatch: pytest.MonkeyPatch,
+  capsys: pytest.CaptureFixture[str],
+) -> None:
+  def fail(*_: object) -> None:
+    raise ZeroDivisionError('of a plot')
+
+  before = {p.name: p.read_bytes() for p in copied.iterdir() if p.is_file()}
+  monkeypatch.setattr(run_page, 'draw', fail)
+  run_page.leave(copied)
+  after = {p.name: p.read_bytes() for p in copied.iterdir() if p.is_file()}
+  assert after == before
+  (line,) = capsys.readouterr().err.splitlines()
+  assert 'of a plot' in line
+  assert 'its data are whole, and `waggle report FOLDER` makes the page' in line
+
+
 def test_what_receivers_saw_comes_back_as_it_was(recorded: object) -> None:
   run = archive.load(recorded.folder)
   assert run.events == recorded.rollout.events

@@ -55,7 +55,6 @@ def delete_all(home: pathlib.Path) -> None:
     (truncate('traces.npz'), 'traces.npz'),
     (write('positions.npz', b''), 'positions.npz'),
     (delete('result.json'), 'result.json'),
-    (delete('index.html'), 'index.html'),
     (write('notes', b'mine'), 'notes'),
     (lambda home: (home / 'more').mkdir(), 'damaged'),
     (delete('seal.json'), 'not finished'),
@@ -76,6 +75,13 @@ def test_every_damage_is_found(
   assert suite_case.flaw(home, seal['identity']) is None
   damage(home)
   assert flaw in suite_case.flaw(home, seal['identity'])
+
+
+def test_a_page_is_no_result(finished: object) -> None:
+  home = finished.home('dance')
+  seal = json.loads((home / 'seal.json').read_text(encoding='utf-8'))
+  delete('index.html')(home)
+  assert suite_case.flaw(home, seal['identity']) is None
 
 
 def test_damaged_results_are_named_and_run_anew_and_others_kept(

@@ -13,6 +13,7 @@ import time
 import pytest
 
 from waggle_tasks import suites
+from waggle_tasks.experiments.pages import run_page
 from waggle_tasks.experiments.record import folders, provenance
 from waggle_tasks.experiments.studies import pool, suite_case
 
@@ -143,7 +144,10 @@ def test_a_case_reports_exactly_the_frames_that_it_simulates(
   jobs = [
     pool.Job(
       case.name, suite_case.fly,
-      (case, 'klt', 'identity', reference.command, tmp_path / case.name),
+      (
+        case, 'klt', 'identity', reference.command, tmp_path / case.name,
+        run_page.leave,
+      ),
     )
     for case in suites.from_rows(reference.rows[:2])
   ]  # fmt: skip

@@ -175,22 +175,6 @@ class Broadcast(copies.Uncopied, composer.Task):
     """Whether this episode's dance is a whole message."""
     return self.performer.is_whole
 
-  @property
-  def physics_steps_per_control_step(self) -> int:
-    """One for composer, which else runs Python between physics steps."""
-    return 1
-
-  def before_substep(
-    self,
-    physics: mjcf.Physics,
-    action: Sequence[np.ndarray],
-    random_state: np.random.RandomState,
-  ) -> None:
-    """Makes all physics steps of the control step but the last."""
-    del action, random_state
-    steps = round(self.control_timestep / physics.timestep())
-    physics.step(steps - 1)
-
   def before_step(
     self,
     physics: mjcf.Physics,
@@ -204,6 +188,7 @@ class Broadcast(copies.Uncopied, composer.Task):
       ClockError: if the physics was set to a state that cannot be flown on.
     """
     del random_state
+    self._touched = set[tuple[str, str]]()
     if self._clock.was_set(physics):
       self._replay(physics)
     time_s, middle_s = self._clock.time_s, self._clock.middle_s
@@ -252,13 +237,21 @@ class Broadcast(copies.Uncopied, composer.Task):
       physics, place_m, velocity_mps, acceleration_mps2, turn_rad + drift[0][3]
     )
 
+  def after_substep(
+    self, physics: mjcf.Physics, random_state: np.random.RandomState
+  ) -> None:
+    """Notices who touches, however short."""
+    del random_state
+    if physics.data.ncon:
+      self._touched |= contacts.find(physics)
+
   def after_step(
     self, physics: mjcf.Physics, random_state: np.random.RandomState
   ) -> None:
     """Takes stock of the step."""
     del random_state
     self._clock.tick(physics)
-    self._contacts = contacts.find(physics)
+    self._contacts = tuple(sorted(self._touched))
     drifts = self._drifts()
     positions_m = self.positions_m(physics)
     velocities_mps = self.velocities_mps(physics)

@@ -3,10 +3,8 @@
 from dm_control import mjcf
 
 
-def find(physics: mjcf.Physics) -> tuple[tuple[str, str], ...]:
+def find(physics: mjcf.Physics) -> set[tuple[str, str]]:
   """Pairs of names that touch now; 'room' is the arena."""
-  if not physics.data.ncon:
-    return ()
   model, pairs = physics.model, set[tuple[str, str]]()
   for contact in physics.data.contact[: physics.data.ncon]:
     names = [
@@ -15,4 +13,4 @@ def find(physics: mjcf.Physics) -> tuple[tuple[str, str], ...]:
     ]
     one, other = ('room' if name == 'world' else name for name in names)
     pairs.add((min(one, other), max(one, other)))
-  return tuple(sorted(pairs))
+  return pairs
