@@ -291,7 +291,7 @@ VIEW_BANK = dataclasses.replace(ABSOLUTE, views=Views())
 def lasted(since_s: float, now_s: float, duration_s: float) -> bool:
   """Whether a duration is over, to a microsecond.
 
-  Frame times are multiples of 0.04 s in floating point, and so are most
+  Times of images are multiples of a frame in floating point, and so are most
   durations; exact comparison would be decided by rounding.
   """
   return now_s - since_s > duration_s - 1e-6 and math.isfinite(since_s)

@@ -100,7 +100,7 @@ class Hover:
     self._alignment = alignment.Alignment(image)
     grey = difference.grey(image)
     self._scene = learning.Scene(
-      self._config, grey, _middle(grey, _REST_PX),
+      self._config, grey, time_s, _middle(grey, _REST_PX),
       _middle(grey, self._config.watch_px),
     )  # fmt: skip
     self._scene.first.loosen(self._slack_px)
@@ -127,7 +127,7 @@ class Hover:
     moved = self._moved(grey[middle], scene.first[middle], 2.0)
     if moved and not self._hardly_moved(grey, scene.first, 2.0):
       return False
-    scene.add(grey)
+    scene.add(grey, time_s)
     self.visible = self._contrast
     if config_lib.lasted(self._since_s, time_s, self._config.learn_s):
       self._background = scene.background

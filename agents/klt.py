@@ -14,9 +14,10 @@ import numpy as np
 
 from waggle_tasks.agents import config as config_lib
 
-# Speed is measured over at least so long, an image interval of the paper's
-# camera: faster cameras, and recordings that show each image several times,
-# would measure their noise, or nothing and twice as much in turn.
+# Speed is measured over at least so long, the time from one image to the next
+# of the paper's camera: faster cameras, and recordings that show each image
+# several times, would measure their noise, or nothing and twice as much in
+# turn.
 _SPEED_S = 0.04
 
 

@@ -13,7 +13,7 @@ from waggle_tasks.agents import difference
 from waggle_tasks.agents import noise as noise_lib
 
 _KEPT = 10  # Images by which changes are measured...
-_EVERY = 4  # ...one of so many.
+_EVERY_S = 0.16  # ...so long one after another.
 # Noise of independent pixels gathers up to so many times its variance; what
 # gathers more in so few images will gather so many times as much in a dance.
 _INDEPENDENT, _MORE = 2.9, 1.6
@@ -34,6 +34,7 @@ class Scene:
     self,
     config: config_lib.Differencing,
     grey: np.ndarray,  # (H, W) uint8
+    time_s: float,
     spared: difference.Box,
     watched: difference.Box,
   ) -> None:
@@ -42,6 +43,7 @@ class Scene:
     Args:
       config: The tracker's numbers.
       grey: The picture.
+      time_s: Its time.
       spared: Where the target rests...
       watched: ...and what is around it, where changes are measured.
     """
@@ -49,7 +51,7 @@ class Scene:
     self._spared, self._watched = spared, watched
     self._sum = grey.astype(np.float32)
     self._count = 1
-    self._last, self._kept = grey, [grey]
+    self._last, self._kept, self._kept_s = grey, [grey], time_s
     self._noise: noise_lib.Noise | None = None
     self.speckled = False
     self.first = difference.Background(grey)
@@ -67,11 +69,13 @@ class Scene:
       self.detector = self._tuned([grey], self.first, 2.0)
     self._last = grey
 
-  def add(self, grey: np.ndarray) -> None:
+  def add(self, grey: np.ndarray, time_s: float) -> None:
     """Takes a picture in which nothing has moved."""
     self._sum += grey
-    if self._count % _EVERY == 0 and len(self._kept) < _KEPT:
+    due = config_lib.lasted(self._kept_s, time_s, _EVERY_S)
+    if due and len(self._kept) < _KEPT:
       self._kept.append(grey)
+      self._kept_s = time_s
     self._count += 1
 
   @property

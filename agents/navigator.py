@@ -9,7 +9,8 @@ import numpy as np
 
 from waggle_tasks import errors
 from waggle_tasks.agents import config
-from waggle_tasks.protocol import flight, payload, reference, timing
+from waggle_tasks.protocol import agreement as agreement_lib
+from waggle_tasks.protocol import flight, payload, reference
 
 
 class CommandError(errors.WaggleError):
@@ -32,13 +33,15 @@ class Command:
 class Navigator:
   """Hovers, takes one command, flies it, and holds."""
 
-  def __init__(self, units: payload.Units = payload.Units()) -> None:
+  def __init__(
+    self, agreement: agreement_lib.Agreement = agreement_lib.Agreement()
+  ) -> None:
     """Makes a navigator at the beginning of an episode.
 
     Args:
-      units: The agreed heading step and distance unit.
+      agreement: What both sides know.
     """
-    self._units = units
+    self._agreement = agreement
     self._hold_m: np.ndarray | None = None
     self._flight: flight.Flight | None = None
     self._last: tuple[float, np.ndarray] | None = None
@@ -74,8 +77,10 @@ class Navigator:
         f'`payload` {command.payload.bits} must be the only one in an episode:'
         ' one was accepted before'
       )
-    displacement_m = command.payload.displacement_m(self._units)
-    goal_m = flight.goal_m(position_m, displacement_m)
+    displacement_m = command.payload.displacement_m(self._agreement.units)
+    goal_m = flight.goal_m(
+      position_m, displacement_m, self._agreement.hover_height_m
+    )
     self._flight = flight.Flight(position_m.copy(), goal_m, time_s)
 
   def step(self, position_m: np.ndarray, time_s: float) -> reference.Reference:
@@ -90,7 +95,7 @@ class Navigator:
     if self._flight is None:
       return reference.Reference.hover(self._hold_m)
     self._watch_arrival(self._flight, position_m, time_s)
-    motion = self._flight.motion(time_s + timing.FRAME_S / 2)
+    motion = self._flight.motion(time_s + self._agreement.frame_s / 2)
     return reference.Reference(*motion, 0.0, self._flight.goal_m)
 
   def _watch_arrival(

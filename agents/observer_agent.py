@@ -162,7 +162,7 @@ class Team:
     self.agents = tuple(
       ObserverAgent(
         receivers.make(receiver_name, agreement),
-        navigator_lib.Navigator(agreement.units),
+        navigator_lib.Navigator(agreement),
       )
       for _ in range(count)
     )

@@ -9,7 +9,7 @@ import numpy as np
 from waggle_tasks import appearance, runtime
 from waggle_tasks.arenas import bounds, clutter, layouts, scenery, views
 from waggle_tasks.arenas import sun as sun_lib
-from waggle_tasks.protocol import timing
+from waggle_tasks.protocol import agreement as agreement_lib
 
 runtime.require_versions()
 
@@ -21,8 +21,8 @@ _CURVE_M, _CORNER_M = 2.2, 2.6
 TILE_M = 0.4
 PAD_RADIUS_M = 0.13
 
-# Twice an observer's image of 640 x 480 along each axis, for supersampling.
-_BUFFER_PX = (1280, 960)
+# An image is drawn so many times as large along each axis, and then made small.
+_SAMPLES = 2
 
 _SLATE = (0.35, 0.43, 0.51, 1.0)
 _TILE = (0.50, 0.57, 0.64, 1.0)
@@ -56,20 +56,23 @@ class FlightRoom(composer.Arena):
     self,
     look: appearance.Appearance | None = None,
     name: str = 'flight_room',
+    agreement: agreement_lib.Agreement = agreement_lib.Agreement(),
   ) -> None:
     """Builds the empty room.
 
     Args:
       look: What it looks like; the default appearance if None.
       name: Model name.
+      agreement: What both sides know: the camera, the rate and the height.
     """
     super()._build(name=name)
     self._look = look or appearance.Appearance()
+    self._agreement = agreement
     self._positions_m: list[tuple[float, float, float]] = []
     self._set_options()
     self._add_room()
     self._add_lights()
-    self._views = views.SharedViews(self._mjcf_root)
+    self._views = views.SharedViews(self._mjcf_root, agreement.hover_height_m)
 
   @property
   def look(self) -> appearance.Appearance:
@@ -139,14 +142,18 @@ class FlightRoom(composer.Arena):
     """Moves the sun and its shadows to the end of the control step."""
     del random_state
     if self._sun:
-      self._sun.shine(physics, physics.time() + timing.FRAME_S)
+      frame_s = self._agreement.frame_s
+      self._sun.shine(physics, physics.time() + frame_s, frame_s)
 
   def _set_options(self) -> None:
     root = self._mjcf_root
     # Composer's lower bound would add 10 mg to every attachment frame.
     root.compiler.boundmass = 0.0
     root.compiler.boundinertia = 0.0
-    width_px, height_px = _BUFFER_PX
+    width_px, height_px = (
+      _SAMPLES * max(sides)
+      for sides in zip(views.SIZE_PX, self._agreement.camera.size, strict=True)
+    )
     getattr(root.visual, 'global').set_attributes(
       offwidth=width_px, offheight=height_px
     )
@@ -155,7 +162,7 @@ class FlightRoom(composer.Arena):
     )
     # Near and far are in units of the extent: 0.05 m and 30 m.
     root.statistic.set_attributes(
-      extent=1.0, center=(0.0, 0.0, layouts.HOVER_HEIGHT_M)
+      extent=1.0, center=(0.0, 0.0, self._agreement.hover_height_m)
     )
     root.visual.map.set_attributes(znear=0.05, zfar=30.0)
 

@@ -16,9 +16,9 @@ from typing import Protocol
 import numpy as np
 
 from waggle_tasks import errors
-from waggle_tasks.protocol import checks, flight
+from waggle_tasks.protocol import agreement, checks
 
-HOVER_HEIGHT_M = flight.HOVER_HEIGHT_M
+_USUAL_M = agreement.Agreement.hover_height_m  # A scenario may have another.
 _DISTANCE_M = (0.001, 100.0)  # Smallest and largest.
 
 
@@ -33,10 +33,13 @@ class Pose:
   Attributes:
     position_m: World x, y and z.
     yaw_rad: Rotation about world z; at zero the nose points along +x.
+    at_hover: Whether a scenario puts it at the height that it agrees on,
+      whatever z is here.
   """
 
   position_m: tuple[float, float, float]
   yaw_rad: float
+  at_hover: bool = dataclasses.field(default=False, compare=False, repr=False)
 
   def __post_init__(self) -> None:
     position_m = tuple(map(float, self.position_m))
@@ -47,6 +50,12 @@ class Pose:
     checks.settle(self, 'position_m', position_m)
     endless = -math.inf, math.inf
     checks.settle_numbers(self, {'yaw_rad': endless}, LayoutError)
+
+  def settled(self, height_m: float) -> 'Pose':
+    """The pose where the agreed height is known; one of its own stays."""
+    if not self.at_hover or self.position_m[2] != _USUAL_M:
+      return self
+    return Pose((*self.position_m[:2], height_m), self.yaw_rad)
 
 
 class Layout(Protocol):
@@ -119,12 +128,16 @@ class Line:
 
 def performer_pose() -> Pose:
   """The performer's hover, facing the front observer."""
-  return Pose((0.0, 0.0, HOVER_HEIGHT_M), -math.pi / 2)
+  return _hovering(0.0, 0.0, -math.pi / 2)
 
 
 def facing_performer(x_m: float, y_m: float) -> Pose:
   """The hover above a point of the floor, facing the performance area."""
-  return Pose((x_m, y_m, HOVER_HEIGHT_M), math.atan2(-y_m, -x_m))
+  return _hovering(x_m, y_m, math.atan2(-y_m, -x_m))
+
+
+def _hovering(x_m: float, y_m: float, yaw_rad: float) -> Pose:
+  return Pose((x_m, y_m, _USUAL_M), yaw_rad, at_hover=True)
 
 
 def spread(count: int) -> np.ndarray:

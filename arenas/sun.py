@@ -12,7 +12,6 @@ from dm_control import mjcf
 import numpy as np
 
 from waggle_tasks.arenas import scenery
-from waggle_tasks.protocol import timing
 
 # Of a Crazyflie: see `entities.airframe`.
 _ARM_M, _DISC_M = 0.046, 0.0225
@@ -88,12 +87,7 @@ class Sun:
       self._phases_rad = random_state.uniform(0, 2 * math.pi, 2)
     self.shine(physics, 0.0, 0.0)
 
-  def shine(
-    self,
-    physics: mjcf.Physics,
-    time_s: float,
-    ahead_s: float = timing.FRAME_S,
-  ) -> None:
+  def shine(self, physics: mjcf.Physics, time_s: float, ahead_s: float) -> None:
     """Turns the light, and lays shadows where vehicles will be.
 
     Args:

@@ -1,22 +1,26 @@
 """The cameras that everyone shares, set so that they show every vehicle."""
 
 from collections.abc import Sequence
+import functools
 import math
 
 from dm_control import mjcf
 import numpy as np
 
-_ASPECT = 4.0 / 3.0  # Width to height of a picture.
+from waggle_tasks.protocol import camera
+
+SIZE_PX = camera.Camera().size  # Of a picture, like an observer's.
+_ASPECT = SIZE_PX[0] / SIZE_PX[1]
 _MARGIN_M = 0.35  # Around vehicles.
-_DANCE_M = 2.0  # Highest point of a dance: START's, above the hover.
+_DANCE_M = 0.7  # Highest point of a dance, above the hover: START's.
 
 _TOP_HEIGHT_M = 6.5
 # From the right of the observers, looking down on the dance.
 _OVERVIEW_DIRECTION = np.array((0.62, -0.76, 0.30))
 _OVERVIEW_FOVY_DEG = 32.0
-# Over the shoulder of the performer, which faces the observers.
-_SHOULDER_M = np.array((0.0, 0.75, 1.58))
-_AUDIENCE_M = np.array((0.0, -1.3, 1.22))
+# Over the shoulder of the performer, which faces the observers, from its hover.
+_SHOULDER_M = np.array((0.0, 0.75, 0.28))
+_AUDIENCE_M = np.array((0.0, -1.3, -0.08))
 _PERFORMER_FOVY_DEG = (45.0, 90.0)  # Narrowest and widest.
 
 
@@ -28,13 +32,15 @@ class SharedViews:
   performer's shoulder, as far to the sides as 50 degrees.
   """
 
-  def __init__(self, room: mjcf.RootElement) -> None:
+  def __init__(self, room: mjcf.RootElement, height_m: float) -> None:
     """Adds the cameras to an empty room.
 
     Args:
       room: The room's model.
+      height_m: Where vehicles hover.
     """
-    add = room.worldbody.add
+    self._height_m = height_m
+    add = functools.partial(room.worldbody.add, resolution=SIZE_PX)
     self._top = add(
       'camera',
       name='top',
@@ -43,7 +49,8 @@ class SharedViews:
     )
     self._overview = add('camera', name='overview', fovy=_OVERVIEW_FOVY_DEG)
     self._performer = add('camera', name='performer_view')
-    _aim(self._performer, _SHOULDER_M, _AUDIENCE_M)
+    hover_m = np.array((0.0, 0.0, height_m))
+    _aim(self._performer, hover_m + _SHOULDER_M, hover_m + _AUDIENCE_M)
     self.show([(0.0, 0.0, 0.0)])
 
   def show(self, positions_m: Sequence[tuple[float, float, float]]) -> None:
@@ -53,8 +60,9 @@ class SharedViews:
       positions_m: World x, y and z of each vehicle; at least one.
     """
     spots_m = np.array(positions_m)[:, :2]  # (N, 2)
+    top_m = self._height_m + _DANCE_M
     low_m = np.append(spots_m.min(axis=0) - _MARGIN_M, 0.0)
-    high_m = np.append(spots_m.max(axis=0) + _MARGIN_M, _DANCE_M)
+    high_m = np.append(spots_m.max(axis=0) + _MARGIN_M, top_m)
     middle_m, size_m = (low_m + high_m) / 2, high_m - low_m
     self._top.pos = (*middle_m[:2], _TOP_HEIGHT_M)
     # An orthographic camera's `fovy` is the height of its picture in metres.

@@ -10,9 +10,9 @@ import math
 from dm_control import composer, mjcf
 import numpy as np
 
-from waggle_tasks.protocol import timing
+from waggle_tasks.protocol import agreement as agreement_lib
 
-HEIGHT_M = 2.5  # Higher than a dance.
+_ABOVE_M = 1.2  # The hover point: higher than a dance.
 _HALF_DEPTH_M = 0.01
 _OUTSIDE_M = 12.0  # Along a tangent: beyond any wall.
 _WOOD = (0.58, 0.42, 0.26, 1.0)
@@ -30,6 +30,7 @@ class Board(composer.Entity):
     width_m: float,
     speed_mps: float,
     every_s: float,
+    agreement: agreement_lib.Agreement = agreement_lib.Agreement(),
   ) -> None:
     """Builds the model.
 
@@ -41,16 +42,18 @@ class Board(composer.Entity):
       width_m: Width of the board.
       speed_mps: How fast it passes.
       every_s: Mean time from one pass to the next.
+      agreement: What both sides know: the rate and the height.
     """
     self._radius_m, self._bearing_rad = radius_m, bearing_rad
     self._reach_rad, self._speed_mps = reach_rad, speed_mps
-    self._every_s = every_s
+    self._every_s, self._frame_s = every_s, agreement.frame_s
+    self._height_m = agreement.hover_height_m + _ABOVE_M
     self._root = mjcf.RootElement(model='occluder')
     self._root.worldbody.add(
       'geom',
       name='board',
       type='box',
-      size=(width_m / 2, _HALF_DEPTH_M, HEIGHT_M / 2),
+      size=(width_m / 2, _HALF_DEPTH_M, self._height_m / 2),
       rgba=_WOOD,
       contype=0,
       conaffinity=0,
@@ -80,12 +83,12 @@ class Board(composer.Entity):
   ) -> None:
     """Goes where it is at the end of the coming control step."""
     del random_state
-    self._go(physics, physics.time() + timing.FRAME_S)
+    self._go(physics, physics.time() + self._frame_s)
 
   def _go(self, physics: mjcf.Physics, time_s: float) -> None:
     guide = physics.bind(mjcf.get_attachment_frame(self._root))
     x_m, y_m, yaw_rad = self.place(time_s)
-    guide.mocap_pos = [x_m, y_m, HEIGHT_M / 2]
+    guide.mocap_pos = [x_m, y_m, self._height_m / 2]
     guide.mocap_quat = [math.cos(yaw_rad / 2), 0, 0, math.sin(yaw_rad / 2)]
 
   def place(self, time_s: float) -> tuple[float, float, float]:

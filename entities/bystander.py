@@ -11,7 +11,8 @@ from dm_control import mjcf
 import numpy as np
 
 from waggle_tasks.entities import crazyflie
-from waggle_tasks.protocol import minimum_jerk, timing
+from waggle_tasks.protocol import agreement as agreement_lib
+from waggle_tasks.protocol import minimum_jerk
 
 # Moves take about as long as gestures, rests as their pauses, and a move of
 # three quarters of a turn keeps it under 0.7 m/s.
@@ -23,7 +24,12 @@ class Bystander(crazyflie.Crazyflie):
   """Moves along a circle, rests, and moves on; drawn anew in each episode."""
 
   def _build(  # type: ignore[override]
-    self, name: str, middle_m: np.ndarray, radius_m: float, spread_m: float
+    self,
+    name: str,
+    middle_m: np.ndarray,
+    radius_m: float,
+    spread_m: float,
+    agreement: agreement_lib.Agreement = agreement_lib.Agreement(),
   ) -> None:
     """Builds the model.
 
@@ -32,10 +38,11 @@ class Bystander(crazyflie.Crazyflie):
       middle_m: (3,) where the middle of its circle is, about.
       radius_m: Of that circle.
       spread_m: How far from its middle's place, along each axis, it may be.
+      agreement: What both sides know: the rate.
     """
     super()._build(name)
     self._about_m, self._spread_m = middle_m, spread_m
-    self._radius_m = radius_m
+    self._radius_m, self._frame_s = radius_m, agreement.frame_s
 
   def initialize_episode(
     self, physics: mjcf.Physics, random_state: np.random.RandomState
@@ -62,7 +69,7 @@ class Bystander(crazyflie.Crazyflie):
     """Goes where it is at the end of the coming control step."""
     del random_state
     guide = physics.bind(mjcf.get_attachment_frame(self.mjcf_model))
-    guide.mocap_pos = self.place_m(physics.time() + timing.FRAME_S)
+    guide.mocap_pos = self.place_m(physics.time() + self._frame_s)
 
   def place_m(self, time_s: float) -> np.ndarray:
     """(3,) where it is in this episode at a time."""

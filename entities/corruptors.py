@@ -8,7 +8,7 @@ import cv2
 import numpy as np
 
 from waggle_tasks import sensor
-from waggle_tasks.protocol import timing
+from waggle_tasks.protocol import agreement as agreement_lib
 
 _WHITE = 255
 # A bank holds this many pictures' worth of noise.
@@ -106,18 +106,21 @@ class Light:
   """Brightness that steps and flickers."""
 
   def __init__(
-    self, chosen: sensor.Sensor, random_state: np.random.RandomState
+    self,
+    chosen: sensor.Sensor,
+    random_state: np.random.RandomState,
+    agreement: agreement_lib.Agreement,
   ) -> None:
     """Draws the phase of the flicker."""
-    self._chosen = chosen
+    self._chosen, self._agreement = chosen, agreement
     self._phase_rad = random_state.uniform(0.0, 2 * math.pi)
 
   def gain(self, frame: int) -> float:
     """Brightness in a frame; 1 is the room as it is."""
-    chosen, time_s = self._chosen, frame * timing.FRAME_S
+    chosen, time_s = self._chosen, frame * self._agreement.frame_s
     turn_rad = 2 * math.pi * chosen.flicker_hz * time_s + self._phase_rad
     gain = 1 + chosen.flicker_share * math.sin(turn_rad)
-    if frame >= timing.frames(chosen.step_s):
+    if frame >= self._agreement.frames(chosen.step_s):
       gain *= chosen.step_gain
     return gain
 
@@ -131,10 +134,10 @@ class Light:
 class Blur:
   """Exposure: motion since the last image is blended in."""
 
-  def __init__(self, exposure_s: float) -> None:
-    """Makes it for an exposure of 0 to 0.04 s."""
+  def __init__(self, exposed: float) -> None:
+    """Makes it for an exposure, 0 to 1 of the time between two images."""
     # Of the mean over the exposure, when one image fades into the next.
-    self._share = exposure_s / (2 * timing.FRAME_S)
+    self._share = exposed / 2
     self._last: np.ndarray | None = None
 
   def __call__(self, image: np.ndarray) -> None:

@@ -45,7 +45,7 @@ class _Shown:
 
 
 class EyeCamera(observable.Observable):
-  """Images of one camera, (480, 640, 3) uint8 RGB."""
+  """Images of one camera, (H, W, 3) uint8 RGB, of its resolution."""
 
   def __init__(
     self,
@@ -78,7 +78,8 @@ class EyeCamera(observable.Observable):
   @property
   def array_spec(self) -> specs.BoundedArray:
     """The image's shape, type and range."""
-    shape = (renderer.HEIGHT, renderer.WIDTH, 3)
+    width, height = map(int, self._camera.resolution)
+    shape = (height, width, 3)
     return specs.BoundedArray(shape, np.uint8, 0, 255, self._camera.name)
 
   def observation_callable(

@@ -6,10 +6,8 @@ import dataclasses
 import numpy as np
 
 from waggle_tasks import sensor
-from waggle_tasks.entities import corruptors, renderer
-from waggle_tasks.protocol import timing
-
-_SHAPE = (renderer.HEIGHT, renderer.WIDTH, 3)
+from waggle_tasks.entities import corruptors
+from waggle_tasks.protocol import agreement as agreement_lib
 
 
 @dataclasses.dataclass(eq=False)
@@ -35,26 +33,30 @@ class Feed:
   """
 
   def __init__(
-    self, chosen: sensor.Sensor, random_state: np.random.RandomState
+    self,
+    chosen: sensor.Sensor,
+    random_state: np.random.RandomState,
+    agreement: agreement_lib.Agreement = agreement_lib.Agreement(),
   ) -> None:
     """Makes the feed, before the first frame.
 
     Args:
       chosen: What spoils it.
       random_state: What its own draws begin with.
+      agreement: What both sides know: the camera and the rate.
     """
     seed = int(random_state.randint(2**32, dtype=np.uint32))
     # Each kind draws from its own, so that none of them changes another.
     light, noise, self._draws = (
       np.random.RandomState([seed, kind]) for kind in range(3)
     )
-    self._chosen = chosen
-    self._light = corruptors.Light(chosen, light)
-    self._blur = corruptors.Blur(chosen.exposure_s)
+    self._chosen, self._agreement = chosen, agreement
+    self._light = corruptors.Light(chosen, light, agreement)
+    self._blur = corruptors.Blur(chosen.exposure_s / agreement.frame_s)
     self._noise = None
     if chosen.noise_sigma or chosen.photons:
       self._noise = corruptors.Noise(
-        chosen.noise_sigma, chosen.photons, _SHAPE, noise
+        chosen.noise_sigma, chosen.photons, agreement.camera.shape, noise
       )
     self._frame = self._exposed_frame = -1
     # What is on its way, the oldest first; the first one never waits.
@@ -83,7 +85,7 @@ class Feed:
     if not (self._frame and drops):
       self._delivered = self._sent[0]
 
-  def image(self, picture: np.ndarray) -> np.ndarray:  # (480, 640, 3) uint8
+  def image(self, picture: np.ndarray) -> np.ndarray:  # (H, W, 3) uint8
     """Takes this frame's picture and returns the one that comes."""
     if self._exposed_frame < self._frame:  # Composer may ask again.
       self._exposed_frame = self._frame
@@ -111,5 +113,6 @@ class Feed:
 
   def _during(self, begin_s: float, length_s: float, after: int = 0) -> bool:
     """Whether this frame is in a stretch, or in what follows its first."""
-    begin = timing.frames(begin_s) + after
-    return begin <= self._frame < timing.frames(begin_s + length_s)
+    frames = self._agreement.frames
+    begin = frames(begin_s) + after
+    return begin <= self._frame < frames(begin_s + length_s)

@@ -6,6 +6,8 @@ import numpy as np
 
 from waggle_tasks import sensor as sensor_lib
 from waggle_tasks.entities import crazyflie, eye, feed, optics
+from waggle_tasks.protocol import agreement as agreement_lib
+from waggle_tasks.protocol import camera as camera_lib
 
 
 class Observer(crazyflie.Crazyflie):
@@ -21,6 +23,7 @@ class Observer(crazyflie.Crazyflie):
     camera: str = 'incremental',
     eye_offset_m: float = optics.OFFSET_M,
     sensor: sensor_lib.Sensor = sensor_lib.Sensor(),
+    agreement: agreement_lib.Agreement = agreement_lib.Agreement(),
   ) -> None:
     """Builds the model.
 
@@ -29,18 +32,26 @@ class Observer(crazyflie.Crazyflie):
       camera: One of `optics.CAMERAS`: how its images are rendered.
       eye_offset_m: How far the eye is ahead of the centre of mass.
       sensor: What spoils its images.
+      agreement: What both sides know: its camera and its rate.
     """
     super()._build(name, crazyflie.AZURE)
     self._incremental = camera == 'incremental'
     self._eye = self.airframe.add(
       'camera', name='eye', pos=(eye_offset_m, 0, 0),
-      xyaxes=(0, -1, 0, 0, 0, 1), fovy=optics.FOVY_DEG,
+      xyaxes=(0, -1, 0, 0, 0, 1), fovy=agreement.camera.fovy_deg,
+      resolution=agreement.camera.size,
     )  # fmt: skip
+    self._agreement = agreement
     self.sensor = sensor
     self._feed: feed.Feed | None = None
 
   def _build_observables(self) -> 'ObserverObservables':
     return ObserverObservables(self)
+
+  @property
+  def lens(self) -> camera_lib.Camera:
+    """What its camera is, in numbers."""
+    return self._agreement.camera
 
   @property
   def eye(self) -> mjcf.Element:
@@ -58,7 +69,7 @@ class Observer(crazyflie.Crazyflie):
     """Begins this episode's feed, if anything is to be spoilt."""
     self._feed = None
     if not self.sensor.is_clean:
-      self._feed = feed.Feed(self.sensor, random_state)
+      self._feed = feed.Feed(self.sensor, random_state, self._agreement)
       self._feed.advance(float(_time_s(physics)))
 
   def after_step(
@@ -75,7 +86,7 @@ class Observer(crazyflie.Crazyflie):
     return self._feed is not None
 
   def spoil(self, picture: np.ndarray) -> np.ndarray:
-    """What comes of the eye's picture now, (480, 640, 3) uint8 each."""
+    """What comes of the eye's picture now, (H, W, 3) uint8 each."""
     return picture if self._feed is None else self._feed.image(picture)
 
   def image_time_s(self, physics: mjcf.Physics) -> np.ndarray:
@@ -95,7 +106,7 @@ class ObserverObservables(crazyflie.CrazyflieObservables):
 
   @composer.observable
   def camera(self) -> eye.EyeCamera:
-    """Image of the eye: (480, 640, 3) uint8 RGB."""
+    """Image of the eye: (H, W, 3) uint8 RGB."""
     entity = self._entity
     return eye.EyeCamera(entity.eye, entity.incremental, entity.spoil)
 

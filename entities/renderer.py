@@ -19,7 +19,6 @@ from collections.abc import Iterator
 import contextlib
 import dataclasses
 import functools
-import math
 from typing import Any
 
 import cv2
@@ -28,8 +27,8 @@ import mujoco
 import numpy as np
 
 from waggle_tasks.entities import forks, framebuffer, rigid, windows
+from waggle_tasks.protocol import camera as camera_lib
 
-WIDTH, HEIGHT = 640, 480  # Paper, section 'Scene, sensors, ...'.
 _SAMPLES = 2  # Samples per pixel along each axis.
 _HIDDEN_GROUP = 5  # Not drawn by default (MuJoCo, mjvOption.geomgroup).
 # Bodies and cameras that are nearer than this to where they are shown are at
@@ -43,7 +42,6 @@ _LOOKS = (
   'light_dir', 'light_castshadow', 'mat_reflectance',
 )  # fmt: skip
 _HEADLIGHT = ('ambient', 'diffuse', 'specular')
-_WHOLE = (0, 0, WIDTH, HEIGHT)
 
 
 def _unseen() -> Any:  # noqa: ANN401
@@ -56,8 +54,8 @@ class _Canvas:
   """One camera's picture and what it shows.
 
   Attributes:
-    pixels: (HEIGHT, WIDTH, 3) uint8, the picture.
-    room: (HEIGHT, WIDTH, 3) uint8, the picture without what can move.
+    pixels: (H, W, 3) uint8, the picture.
+    room: (H, W, 3) uint8, the picture without what can move.
     poses: (M, 12) position and rotation of each part, as shown.
     places: (G, 3) and (G, 9) those of the geoms that can move.
     eye: (12,) that of the camera.
@@ -79,16 +77,25 @@ class _Canvas:
   looks: int = 0
   lens: tuple[float, float, bool] = (0.0, 0.0, False)
 
+  @property
+  def size(self) -> tuple[int, int]:
+    """Width and height of the picture."""
+    height, width = self.pixels.shape[:2]
+    return width, height
+
 
 class Renderer:
-  """Draws any number of cameras of one Physics in one GL context."""
+  """Draws any number of cameras of one Physics in one GL context.
+
+  Each has pictures of its own size, the `resolution` of its MJCF element.
+  """
 
   def __init__(self, physics: mjcf.Physics) -> None:
     """Prepares scenes and buffers; draws nothing yet.
 
     Args:
       physics: A compiled model whose offscreen buffer is at least twice the
-        size of an image.
+        size of the largest image.
 
     Raises:
       ValueError: if the offscreen buffer is too small.
@@ -96,11 +103,13 @@ class Renderer:
     self._physics = physics
     self._model = model = physics.model.ptr
     buffer = model.vis.global_.offwidth, model.vis.global_.offheight
-    if buffer[0] < _SAMPLES * WIDTH or buffer[1] < _SAMPLES * HEIGHT:
+    width, height = _SAMPLES * model.cam_resolution.max(axis=0)
+    if buffer[0] < width or buffer[1] < height:
       raise ValueError(
-        '`offwidth` and `offheight` must be at least'
-        f' {_SAMPLES * WIDTH} and {_SAMPLES * HEIGHT}: got {buffer}'
+        f'`offwidth` and `offheight` must be at least {width} and {height}:'
+        f' got {buffer}'
       )
+    self._samples_px = int(width), int(height)
     self._scene = mujoco.MjvScene(model, max(model.ngeom, 1) + 100)
     # Observers see no shadows: that of a moving body falls outside its window.
     self._scene.flags[mujoco.mjtRndFlag.mjRND_SHADOW] = False
@@ -139,7 +148,7 @@ class Renderer:
   @functools.cached_property
   def _frame(self) -> framebuffer.Framebuffer:
     """Made when the GL context is current for the first time."""
-    return framebuffer.Framebuffer(_SAMPLES * WIDTH, _SAMPLES * HEIGHT)
+    return framebuffer.Framebuffer(*self._samples_px)
 
   def image(self, camera_id: int, incremental: bool = True) -> np.ndarray:
     """The camera's picture now.
@@ -150,7 +159,7 @@ class Renderer:
         drawn. Both give the same picture.
 
     Returns:
-      (HEIGHT, WIDTH, 3) uint8 RGB. It is the renderer's own buffer: copy it
+      (H, W, 3) uint8 RGB. It is the renderer's own buffer: copy it
       before the next call, and do not write to it.
 
     Raises:
@@ -158,7 +167,8 @@ class Renderer:
     """
     forks.check()
     if camera_id not in self._canvases:
-      blank = np.empty((2, HEIGHT, WIDTH, 3), np.uint8)
+      width, height = self._model.cam_resolution[camera_id]
+      blank = np.empty((2, height, width, 3), np.uint8)
       self._canvases[camera_id] = _Canvas(*blank)
     canvas = self._canvases[camera_id]
     self._watch_looks()
@@ -226,7 +236,7 @@ class Renderer:
     with self._as_shown(camera_id, canvas):
       if anew:
         hidden = self._mobile[:0] if self._spills else self._mobile
-        self._draw(canvas, _WHOLE, canvas.room, hidden)
+        self._draw(canvas, (0, 0, *canvas.size), canvas.room, hidden)
         canvas.pixels[:] = canvas.room
         canvas.shown = {}
       changed = set(moved)
@@ -290,13 +300,15 @@ class Renderer:
       self._camera, mujoco.mjtCatBit.mjCAT_ALL, self._scene,
     )  # fmt: skip
     left, top, right, bottom = window
+    full_width, full_height = canvas.size
     for camera in self._scene.camera:
       half_height = camera.frustum_top
-      half_width = half_height * WIDTH / HEIGHT
-      camera.frustum_center = half_width * ((left + right) / WIDTH - 1)
-      camera.frustum_width = half_width * (right - left) / WIDTH  # Half of it.
-      camera.frustum_top = half_height * (1 - 2 * top / HEIGHT)
-      camera.frustum_bottom = half_height * (1 - 2 * bottom / HEIGHT)
+      half_width = half_height * full_width / full_height
+      camera.frustum_center = half_width * ((left + right) / full_width - 1)
+      # Half of it.
+      camera.frustum_width = half_width * (right - left) / full_width
+      camera.frustum_top = half_height * (1 - 2 * top / full_height)
+      camera.frustum_bottom = half_height * (1 - 2 * bottom / full_height)
 
   def _project(self, canvas: _Canvas, parts: np.ndarray) -> np.ndarray:
     """Windows (K, 4) int that hold parts (K,); empty when out of view."""
@@ -308,14 +320,15 @@ class Renderer:
     near_m, focal_px, flat = canvas.lens
     if flat:  # As if everything were 1 m away.
       in_eye[..., 2] = -1.0
-    return windows.around(in_eye, near_m, focal_px, (WIDTH, HEIGHT))
+    return windows.around(in_eye, near_m, focal_px, canvas.size)
 
   def _lens(self, camera_id: int) -> tuple[float, float, bool]:
     """Distance of the near plane, focal length in px, whether orthographic."""
     model = self._model
     near_m = float(model.vis.map.znear * model.stat.extent)
     fovy = float(model.cam_fovy[camera_id])
+    height = int(model.cam_resolution[camera_id][1])
     orthographic = mujoco.mjtProjection.mjPROJ_ORTHOGRAPHIC
     if model.cam_projection[camera_id] == orthographic:
-      return near_m, HEIGHT / fovy, True  # `fovy` is the picture's height in m.
-    return near_m, HEIGHT / 2 / math.tan(math.radians(fovy) / 2), False
+      return near_m, height / fovy, True  # `fovy` is the picture's height in m.
+    return near_m, camera_lib.focal_length_px(height, fovy), False

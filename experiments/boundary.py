@@ -22,7 +22,7 @@ from waggle_tasks.agents import receiver, receivers
 from waggle_tasks.experiments import launch
 from waggle_tasks.experiments.flags import receiver_flag, scenario_flags
 from waggle_tasks.experiments.machine import table
-from waggle_tasks.protocol import checks, timing
+from waggle_tasks.protocol import checks
 
 scenario_flags.define()
 _RECEIVER = receiver_flag.define()
@@ -52,7 +52,8 @@ def main(argv: Sequence[str]) -> int:
   # Imported here: help needs no simulator.
   from waggle_tasks.experiments.episodes import boundary_worlds
 
-  with tqdm.tqdm(total=timing.frames(scene.episode_s), desc='frames') as bar:
+  frames = scene.agreement.frames(scene.episode_s)
+  with tqdm.tqdm(total=frames, desc='frames') as bar:
     own, foreign, swapped = boundary_worlds.experiment(
       scene, other, _RECEIVER.value, swap, bar.update
     )

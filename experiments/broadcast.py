@@ -35,7 +35,6 @@ from waggle_tasks.experiments.record import (
   writer,
 )
 from waggle_tasks.experiments.studies import job_progress
-from waggle_tasks.protocol import timing
 
 if TYPE_CHECKING:
   from dm_control import composer
@@ -98,9 +97,10 @@ def _roll(
   """Runs the episode behind a progress bar of simulated seconds."""
   from waggle_tasks.experiments.episodes import rollout as rollout_lib
 
+  frame = job_progress.ticks(scene.agreement.frame_s)
   form = '{desc}: {percentage:3.0f}%|{bar}| {n:.0f}/{total:.0f} s'
   with job_progress.seconds_bar(
-    timing.frames(scene.episode_s), desc='broadcast',
+    scene.episode_s, desc='broadcast',
     bar_format=form + ' simulated [{elapsed} < {remaining}]',
   ) as bar:  # fmt: skip
 
@@ -111,7 +111,7 @@ def _roll(
     ) -> None:
       del environment, team
       if not timestep.first():
-        bar.update()
+        bar.update(frame)
 
     return rollout_lib.run(scene, receiver_name, [*watchers, watch])
 

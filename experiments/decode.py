@@ -21,7 +21,6 @@ from absl import flags
 
 from waggle_tasks import errors
 from waggle_tasks.agents import receivers
-from waggle_tasks.entities import optics
 from waggle_tasks.experiments import launch
 from waggle_tasks.experiments.flags import receiver_flag
 from waggle_tasks.experiments.record import archive, capture, folders, reader
@@ -58,7 +57,7 @@ _FOVY_DEG = flags.DEFINE_float(
   'fovy_deg',
   None,
   'Vertical field of view of the whole picture, in degrees. Unset, and without'
-  f' --focal_px, {optics.FOVY_DEG:g}.',
+  f' --focal_px, {camera.FOVY_DEG:g}.',
 )
 _ANNOTATE = flags.DEFINE_string(
   'annotate', None, 'Video to write that shows what the receiver saw.'
@@ -178,9 +177,9 @@ def _focal_px(height: int) -> float:
   if _FOCAL_PX.value is not None:
     checks.number('focal_px', _FOCAL_PX.value, 1.0, 1e5, DecodeError)
     return _FOCAL_PX.value
-  fovy_deg = optics.FOVY_DEG if _FOVY_DEG.value is None else _FOVY_DEG.value
+  fovy_deg = camera.FOVY_DEG if _FOVY_DEG.value is None else _FOVY_DEG.value
   checks.number('fovy_deg', fovy_deg, 1.0, 170.0, DecodeError)
-  return height / 2 / math.tan(math.radians(fovy_deg) / 2)
+  return camera.focal_length_px(height, fovy_deg)
 
 
 if __name__ == '__main__':

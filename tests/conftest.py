@@ -214,7 +214,7 @@ class _Flyer:
     out = []
     for begin_m in self._begins_m:
       plan = flight.Flight(begin_m, begin_m + self._offset_m, self._begin_s)
-      motion = plan.motion(time_s + timing.FRAME_S / 2)
+      motion = plan.motion(time_s + agreement.Agreement().frame_s / 2)
       wanted = reference.Reference(*motion, 0.0, plan.goal_m)
       out.append(wanted.to_array())
     return out

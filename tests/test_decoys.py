@@ -12,6 +12,7 @@ from waggle_tasks.entities import performer
 from waggle_tasks.experiments.episodes import evaluator, rollout
 from waggle_tasks.experiments.record import story
 from waggle_tasks.protocol import (
+  agreement,
   clock,
   decoys,
   frame,
@@ -21,6 +22,8 @@ from waggle_tasks.protocol import (
 )
 from waggle_tasks.protocol.symbols import Symbol
 from waggle_tasks.tasks import safety
+
+AGREED = agreement.Agreement()
 
 FIGURES = ('circles', 'diagonals', 'random_walk', 'navigation')
 FRAMES = (
@@ -195,7 +198,7 @@ def test_nothing_is_to_be_decoded_and_nobody_may_move(name: str) -> None:
   moved_m = np.zeros((frames, 3))
   moved_m[30:, 1] = 0.4
   flown = rollout.Rollout(
-    np.arange(frames) * timing.FRAME_S,
+    np.arange(frames) * AGREED.frame_s,
     {f'observer_{k}': moved_m * (k == 2) for k in (1, 2, 3)},
     (),
     {f'observer_{k}': () for k in (1, 2, 3)},

@@ -9,8 +9,10 @@ import pytest
 from waggle_tasks import registry, scenario, suites
 from waggle_tasks.arenas import layouts
 from waggle_tasks.experiments.episodes import evaluator, rollout
-from waggle_tasks.protocol import flight, reference, timing
+from waggle_tasks.protocol import agreement, flight, reference, timing
 from waggle_tasks.tasks import drift
+
+AGREED = agreement.Agreement()
 
 STILL = timing.Timing(initial_hover_s=60.0)
 
@@ -26,7 +28,7 @@ def track(
     for each in timestep.observation
   ]
   names = [*task.positions_m(environment.physics)]
-  for _ in range(timing.frames(seconds)):
+  for _ in range(AGREED.frames(seconds)):
     timestep = environment.step(hold)
     assert not timestep.last()
     places_m = task.positions_m(environment.physics)
@@ -154,7 +156,7 @@ def test_a_drift_of_5_mm_is_no_motion_and_lets_flights_arrive(
   np.testing.assert_array_equal(rewards, [1, 1])
   assert not task.refusals
   flown = rollout.Rollout(
-    np.arange(len(positions)) * timing.FRAME_S,
+    np.arange(len(positions)) * AGREED.frame_s,
     {n: np.stack([p[n] for p in positions]) for n in positions[0]},
     (),
     {},
@@ -164,7 +166,7 @@ def test_a_drift_of_5_mm_is_no_motion_and_lets_flights_arrive(
   scene = scenario.Scenario(observers=2, seed=seed, **short)
   for name in ('observer_1', 'observer_2'):
     away_m = flown.positions_m[name] - flown.positions_m[name][0]
-    assert np.linalg.norm(away_m, axis=1)[: timing.frames(begin_s)].max() > 0.01
+    assert np.linalg.norm(away_m, axis=1)[: AGREED.frames(begin_s)].max() > 0.01
     assert evaluator._early_motion(flown, name, begin_s) == []
     judged = evaluator._fly(scene, flown, name, begin_s)
     assert judged['failures'] == []
@@ -189,9 +191,9 @@ class _Navigating:
     out = []
     for begin_m in self._begins_m:
       goal_m = np.add(begin_m, (0.0, 0.4, 0.0))
-      goal_m[2] = flight.HOVER_HEIGHT_M
+      goal_m[2] = AGREED.hover_height_m
       plan = flight.Flight(begin_m, goal_m, self._begin_s)
-      motion = plan.motion(time_s + timing.FRAME_S / 2)
+      motion = plan.motion(time_s + AGREED.frame_s / 2)
       out.append(reference.Reference(*motion, 0.0, goal_m).to_array())
     return out
 

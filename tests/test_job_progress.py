@@ -17,22 +17,22 @@ def test_a_bar_of_any_length_ends_full_and_without_a_warning(
   form = '{percentage:.0f} {bar} {n:.2f} of {total:.2f} s'
   with warnings.catch_warnings():
     warnings.simplefilter('error')
-    with job_progress.seconds_bar(frames, bar_format=form) as bar:
+    with job_progress.seconds_bar(frames / 25, bar_format=form) as bar:
       for _ in range(frames):
-        bar.update()
+        bar.update(job_progress.ticks(1 / 25))
   last = capsys.readouterr().err.splitlines()[-1]
   assert last.startswith('100 ')
   assert f'{frames / 25:.2f} of {frames / 25:.2f} s' in last
 
 
-def test_a_job_that_tells_more_than_its_frames_does_not_overrun(
+def test_a_job_that_tells_more_than_its_time_does_not_overrun(
   capsys: pytest.CaptureFixture[str],
 ) -> None:
   job = pool.Job('one', print, ())
-  news = [pool.Progress(job, 40), pool.Progress(job, 60), pool.Done(job, 1)]
+  news = [pool.Progress(job, 1.6), pool.Progress(job, 2.4), pool.Done(job, 1)]
   with warnings.catch_warnings():
     warnings.simplefilter('error')
-    done = [*job_progress.shown(news, {'one': 50}, lambda *_: 'one')]
+    done = [*job_progress.shown(news, {'one': 2.0}, lambda *_: 'one')]
   assert done == [pool.Done(job, 1)]
   assert '2/2 s simulated' in capsys.readouterr().err.splitlines()[-1]
 

@@ -139,7 +139,7 @@ def test_every_observer_looks_at_the_performance_area(
     np.testing.assert_allclose(
       ahead, (-x / math.hypot(x, y), -y / math.hypot(x, y)), atol=1e-12
     )
-    assert z == layouts.HOVER_HEIGHT_M == 1.3
+    assert z == 1.3
 
 
 def test_a_single_observer_is_straight_in_front_whatever_the_spread() -> None:

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from waggle_tasks.agents import navigator
-from waggle_tasks.protocol import payload, reference
+from waggle_tasks.protocol import agreement, payload, reference
 
 HOME_M = np.array([0.65, -1.126, 1.3])
 Fly = Callable[..., list[reference.Reference]]
@@ -80,7 +80,7 @@ def test_the_targets_height_is_1_3_m(pilot: navigator.Navigator) -> None:
 
 def test_other_units_are_another_value() -> None:
   units = payload.Units(math.pi / 2, 0.1)
-  each = navigator.Navigator(units)
+  each = navigator.Navigator(agreement.Agreement(units=units))
   each.accept(command('000111'), HOME_M, 0.0)
   np.testing.assert_allclose(each.target_m - HOME_M, (-0.3, 0, 0), atol=1e-9)
 

@@ -12,7 +12,16 @@ import pytest
 
 from waggle_tasks.arenas import layouts
 from waggle_tasks.entities import crazyflie, performer
-from waggle_tasks.protocol import frame, gestures, payload, schedule, timing
+from waggle_tasks.protocol import (
+  agreement,
+  frame,
+  gestures,
+  payload,
+  schedule,
+  timing,
+)
+
+AGREED = agreement.Agreement()
 
 Fixture = Callable[..., object]
 Load = Callable[..., composer.Environment]
@@ -122,7 +131,7 @@ def test_the_dance_is_followed_within_2_mm_from_its_begin_to_its_end(
   environment = load(cameras=False, observers=1, payload='010010')
   task, errors_m = environment.task, []
   for index, _ in enumerate(episode(environment, hover)):
-    wanted_m = motion(task.performer, index * timing.FRAME_S)[0]
+    wanted_m = motion(task.performer, index * AGREED.frame_s)[0]
     position_m = task.positions_m(environment.physics)['performer']
     errors_m.append(np.linalg.norm(position_m - wanted_m))
   assert len(errors_m) > 2300

@@ -9,7 +9,9 @@ import pytest
 
 from waggle_tasks import registry
 from waggle_tasks.agents import config, group, receiver, receivers
-from waggle_tasks.protocol import agreement, camera, gestures, timing
+from waggle_tasks.protocol import agreement, camera, gestures
+
+AGREED = agreement.Agreement()
 
 
 def numbers(value: config.Config) -> dict[str, float]:
@@ -106,7 +108,7 @@ def test_a_changed_number_is_the_one_that_reads(
 ) -> None:
   (seen,) = load(observers=1).reset().observation
   reader = receivers.make(name)
-  times_s = np.arange(80) * timing.FRAME_S
+  times_s = np.arange(80) * AGREED.frame_s
   events = [
     event for time_s in times_s for event in reader.step(seen['camera'], time_s)
   ]

@@ -5,7 +5,9 @@ import math
 import numpy as np
 import pytest
 
-from waggle_tasks.protocol import flight, reference
+from waggle_tasks.protocol import agreement, flight, reference
+
+AGREED = agreement.Agreement()
 
 
 def test_a_reference_is_thirteen_numbers_and_back() -> None:
@@ -87,6 +89,6 @@ def test_arrival_and_hold_are_the_papers() -> None:
     flight.ARRIVAL_SPEED_MPS,
     flight.ARRIVAL_DWELL_S,
     flight.HOLD_S,
-    flight.HOVER_HEIGHT_M,
+    AGREED.hover_height_m,
   )
   assert limits == (0.015, 0.025, 0.4, 2.0, 1.3)

@@ -13,7 +13,8 @@ from waggle_tasks import appearance
 from waggle_tasks.arenas import flight_room, layouts
 from waggle_tasks.entities import observer, performer, renderer
 
-WHOLE_PX = renderer.WIDTH * renderer.HEIGHT
+WIDTH, HEIGHT = 640, 480
+WHOLE_PX = WIDTH * HEIGHT
 LEVEL = (1.0, 0.0, 0.0, 0.0)
 
 
@@ -76,10 +77,8 @@ class Studio:
 
     Rounding may put a sample on the other side of a triangle's edge.
     """
-    samples = self.physics.render(
-      2 * renderer.HEIGHT, 2 * renderer.WIDTH, camera_id=camera
-    )
-    grid = samples.reshape(renderer.HEIGHT, 2, renderer.WIDTH, 2, 3)
+    samples = self.physics.render(2 * HEIGHT, 2 * WIDTH, camera_id=camera)
+    grid = samples.reshape(HEIGHT, 2, WIDTH, 2, 3)
     levels = np.abs(self.image(camera) - grid.mean(axis=(1, 3)))
     return np.count_nonzero(levels.max(axis=2) > 1.5)
 

@@ -308,7 +308,7 @@ def test_pictures_are_those_that_mujoco_draws(
 ) -> None:
   environment = load(observers=1, pauses=FAST, **DISTURBANCES[name])
   *_, image = images(environment, 50)
-  physics, size = environment.physics, (renderer.HEIGHT, renderer.WIDTH)
+  physics, size = environment.physics, (480, 640)
   camera = physics.model.name2id('observer_1/eye', 'camera')
   samples = physics.render(2 * size[0], 2 * size[1], camera_id=camera)
   grid = samples.reshape(size[0], 2, size[1], 2, 3)

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from waggle_tasks.protocol import (
+  agreement,
   frame,
   gestures,
   minimum_jerk,
@@ -17,6 +18,8 @@ from waggle_tasks.protocol import (
   timing,
 )
 from waggle_tasks.protocol.symbols import Symbol
+
+AGREED = agreement.Agreement()
 
 # The stock firmware's limits, which the dance must leave room under.
 SPEED_MPS, ACCELERATION_MPS2 = 1.0, 3.57
@@ -153,7 +156,7 @@ def test_a_pause_that_cannot_be_kept_is_refused(
 def test_durations_are_counted_in_frames_of_the_camera(
   duration_s: float, frames: int
 ) -> None:
-  assert timing.frames(duration_s) == frames
+  assert AGREED.frames(duration_s) == frames
 
 
 @pytest.mark.parametrize('duration_s', [0.4, 3.0])

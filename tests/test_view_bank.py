@@ -23,6 +23,8 @@ from waggle_tasks.protocol import (
 from waggle_tasks.protocol.symbols import Symbol
 from waggle_tasks.tasks import drift, surroundings
 
+AGREED = agreement.Agreement()
+
 BOOK = gestures.v_codebook(duration_s=2.0)
 PAUSES = timing.Timing(3.2, 0.6, 2.0, 1.2)
 AGREED = agreement.Agreement(BOOK, PAUSES)
@@ -119,8 +121,8 @@ def watch(
   rng = np.random.RandomState(0)
   noises = rng.normal(0, sigma, (5, *BLACK.shape)).astype(np.float32)
   last, image = None, BLACK
-  for index in range(timing.frames(duration_s)):
-    time_s = index * timing.FRAME_S
+  for index in range(AGREED.frames(duration_s)):
+    time_s = index * AGREED.frame_s
     place = path(time_s)
     if place != last:
       image = draw(*place, distance_m, angle_deg, room(clutter))

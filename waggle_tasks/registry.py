@@ -23,28 +23,30 @@ class Environment(copies.Uncopied, composer.Environment):
 
 def build(scenario: Scenario) -> broadcast.Broadcast:
   """Builds the task of a scenario from new entities."""
+  agreement = scenario.agreement
   observers = tuple(
     observer.Observer(
       f'observer_{number + 1}',
       scenario.camera,
       scenario.eye_offset_m,
       scenario.sensor,
+      agreement,
     )
     for number in range(scenario.observers)
   )
   parts = parts_lib.Parts(
-    room=flight_room.FlightRoom(scenario.appearance),
+    room=flight_room.FlightRoom(scenario.appearance, agreement=agreement),
     performer=performer.Performer(),
     observers=observers,
     poses=scenario.poses(),
     dance=scenario.schedule,
     message=scenario.message,
     duration_s=scenario.episode_s,
-    units=scenario.units,
+    agreement=agreement,
     jitter_m=scenario.jitter_m,
     drift=scenario.drift,
   )
-  furnish.furnish(parts.room, scenario.surroundings, parts.poses)
+  furnish.furnish(parts.room, scenario.surroundings, parts.poses, agreement)
   match scenario.control:
     case 'no_send':
       return controls.NoSend(parts)

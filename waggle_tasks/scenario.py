@@ -11,14 +11,9 @@ from waggle_tasks import sensor as sensor_lib
 from waggle_tasks.arenas import bounds, layouts
 from waggle_tasks.entities import optics
 from waggle_tasks.protocol import agreement as agreement_lib
-from waggle_tasks.protocol import (
-  checks,
-  clock,
-  decoys,
-  gestures,
-  limits,
-  timing,
-)
+from waggle_tasks.protocol import camera as camera_lib
+from waggle_tasks.protocol import checks, clock, decoys, gestures, timing
+from waggle_tasks.protocol import limits as limits_lib
 from waggle_tasks.protocol import payload as payload_lib
 from waggle_tasks.protocol import schedule as schedule_lib
 from waggle_tasks.tasks import drift as drift_lib
@@ -32,6 +27,8 @@ AFTERMATH_S = 12.0
 NO_SEND_S = 10.0  # Paper, section 'Controls and supplemental suite'.
 INTERRUPTED_S = 60.0  # The same.
 MAX_OBSERVERS = 64
+_SIDE_PX = (64, 2048)  # Of an image.
+_CLEAR_M = 0.1  # From the highest point of a gesture to the ceiling.
 # Fields that are values of their own, and what makes one from plain numbers.
 PARTS: dict[str, Callable[..., Any]] = {
   'codebook': gestures.v_codebook,
@@ -78,7 +75,14 @@ class Scenario:
     surroundings: What else moves in it.
     drift: How far vehicles wander from where they should be.
     sensor: What spoils the observers' images.
+    rate_hz: How many images and references there are in a second: 250 over a
+      whole number, 5 to 125.
+    hover_height_m: Where everybody hovers and where a message leads to, 0.5 to
+      5.5 m above the floor.
     camera: One of `optics.CAMERAS`; both give the same picture.
+    camera_width_px: Width of the observers' images, 64 to 2048.
+    camera_height_px: Height of them, the same.
+    camera_fovy_deg: Their vertical field of view, 10 to 120 degrees.
     eye_offset_m: How far an observer's eye is ahead of its centre of mass.
   """
 
@@ -103,7 +107,12 @@ class Scenario:
   surroundings: surroundings_lib.Surroundings = surroundings_lib.Surroundings()
   drift: drift_lib.Drift = drift_lib.Drift()
   sensor: sensor_lib.Sensor = sensor_lib.Sensor()
+  rate_hz: float = agreement_lib.Agreement.rate_hz
+  hover_height_m: float = agreement_lib.Agreement.hover_height_m
   camera: str = 'incremental'
+  camera_width_px: int = camera_lib.Camera.columns
+  camera_height_px: int = camera_lib.Camera.rows
+  camera_fovy_deg: float = camera_lib.FOVY_DEG
   eye_offset_m: float = optics.OFFSET_M
 
   def __post_init__(self) -> None:
@@ -116,9 +125,19 @@ class Scenario:
         )
     checks.choice('control', self.control, CONTROLS, ScenarioError)
     checks.choice('camera', self.camera, optics.CAMERAS, ScenarioError)
-    counts = {'observers': (1, MAX_OBSERVERS), 'seed': (0, 2**32 - 1)}
+    counts = {
+      'observers': (1, MAX_OBSERVERS),
+      'seed': (0, 2**32 - 1),
+      'camera_width_px': _SIDE_PX,
+      'camera_height_px': _SIDE_PX,
+      'camera_fovy_deg': (10.0, 120.0),
+    }
     checks.settle_numbers(self, counts, ScenarioError)
-    bounds = {
+    agreed = self.agreement  # Which checks itself.
+    for name in ('rate_hz', 'hover_height_m'):
+      checks.settle(self, name, getattr(agreed, name))
+    self._check_frames()
+    limits = {
       'black_observer': (1, self.observers),
       'distance_m': (0.2, 4.0),
       'half_span_deg': (0.0, 180.0),
@@ -127,14 +146,15 @@ class Scenario:
       'jitter_m': (0.0, 0.1),
       'stop_s': (0.0, 600.0),
       'eye_offset_m': (-0.1, 0.1),
-      'duration_s': (timing.FRAME_S, 600.0),
+      'duration_s': (agreed.frame_s, 600.0),
     }
     if self.control != 'black_input':
-      del bounds['black_observer']
+      del limits['black_observer']
     if self.duration_s is None:
-      del bounds['duration_s']
-    checks.settle_numbers(self, bounds, ScenarioError)
-    limits.check_codebook(self.codebook)
+      del limits['duration_s']
+    checks.settle_numbers(self, limits, ScenarioError)
+    limits_lib.check_codebook(self.codebook)
+    self._check_height()
     payload_lib.Payload.from_bits(self.payload, self.units)
     self.surroundings.check(self.poses(), self.units.reach_m)
 
@@ -146,8 +166,17 @@ class Scenario:
   @property
   def agreement(self) -> agreement_lib.Agreement:
     """What both sides know."""
+    seen_with = camera_lib.Camera.of(
+      self.camera_width_px, self.camera_height_px, self.camera_fovy_deg
+    )
     return agreement_lib.Agreement(
-      self.codebook, self.pauses, self.tolerance, self.units
+      self.codebook,
+      self.pauses,
+      self.tolerance,
+      self.units,
+      seen_with,
+      self.rate_hz,
+      self.hover_height_m,
     )
 
   @property
@@ -198,12 +227,31 @@ class Scenario:
     for index, pose in enumerate(places):
       poses[f'observer_{index + 1}'] = pose
     for name, pose in poses.items():
+      poses[name] = pose = pose.settled(self.hover_height_m)
       bounds.check_inside(name, pose)
     # Two neighbours can come closer by the jitter of both, along x and y, and
     # by the drift of both.
     nearer_m = 2 * math.hypot(self.jitter_m, self.jitter_m) + self.drift.near_m
     layouts.check_spacing(poses, safety.MINIMUM_SPACING_M + nearer_m)
     return poses
+
+  def _check_frames(self) -> None:
+    """Refuses what does not fit into the time from one image to the next."""
+    frame_s = self.agreement.frame_s
+    if self.sensor.exposure_s > frame_s:
+      raise ScenarioError(
+        f'`exposure_s` must be at most {frame_s:g} s, the time from one image'
+        f' to the next at {self.rate_hz:g} Hz: got {self.sensor.exposure_s!r}'
+      )
+
+  def _check_height(self) -> None:
+    """Refuses gestures that leave the room."""
+    most_m = bounds.HEIGHT_M - _CLEAR_M - self.codebook.highest_m
+    if self.hover_height_m > most_m:
+      raise ScenarioError(
+        f'`hover_height_m` must be at most {most_m:g}, so that gestures stay'
+        f' {_CLEAR_M:g} m under the ceiling: got {self.hover_height_m!r}'
+      )
 
   def _layout(self) -> layouts.Layout:
     if not isinstance(self.layout, str) and callable(

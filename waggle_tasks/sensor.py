@@ -3,7 +3,7 @@
 import dataclasses
 
 from waggle_tasks import errors
-from waggle_tasks.protocol import checks, timing
+from waggle_tasks.protocol import checks
 
 # The longest that an episode can last: a length that outlasts every one.
 ALWAYS_S = 600.0
@@ -13,7 +13,7 @@ MIN_PHOTONS = 10.0
 _LIMITS = {
   'noise_sigma': (0.0, 128.0),
   'photons': (0.0, 1e6),
-  'exposure_s': (0.0, timing.FRAME_S),
+  'exposure_s': (0.0, 0.2),
   'step_gain': (0.1, 10.0),
   'step_s': (0.0, ALWAYS_S),
   'flicker_share': (0.0, 1.0),
@@ -24,7 +24,7 @@ _LIMITS = {
   'repeated_share': (0.0, 1.0),
   'freeze_s': (0.0, ALWAYS_S),
   'freeze_length_s': (0.0, ALWAYS_S),
-  'late_frames': (0, timing.FRAME_RATE_HZ),
+  'late_frames': (0, 25),
   'dropped_share': (0.0, 1.0),
 }
 
@@ -46,11 +46,11 @@ class Sensor:
     step_s: When brightness changes.
     flicker_share: Amplitude of a sine of brightness about 1, 0 to 1, of a
       phase that is drawn.
-    flicker_hz: Its frequency, 0 to 1000; 25 images a second fold it, so that
+    flicker_hz: Its frequency, 0 to 1000; images fold it, so that of 25 a second
       25, 50 and 100 Hz are a constant.
-    exposure_s: How long an image is exposed, 0 to 0.04. The motion between
-      two images is blended from both: the share of the preceding one is
-      exposure_s / 0.08, a half at most.
+    exposure_s: How long an image is exposed, 0 to the time from one image to
+      the next. The motion between two images is blended from both: the share
+      of the preceding one is exposure_s over twice that time, a half at most.
     noise_sigma: Standard deviation of Gaussian noise in grey levels, 0 to
       128.
     photons: How many photons make full white, 10 to 1e6; 0 for no shot noise.

@@ -17,7 +17,6 @@ from waggle_tasks import registry, scenario
 from waggle_tasks.agents import config, navigator
 from waggle_tasks.entities import observer
 from waggle_tasks.experiments.bench_parts import processes
-from waggle_tasks.protocol import timing
 from waggle_tasks.tasks import broadcast
 
 STOCK = 'stock'
@@ -70,9 +69,9 @@ def fly(scene: scenario.Scenario) -> Flight:
   task, qpos = environment.task, []
   for each in task.observers:
     each.observables.camera.enabled = False
-  pilots = [navigator.Navigator(scene.units) for _ in task.observers]
+  pilots = [navigator.Navigator(scene.agreement) for _ in task.observers]
   command = navigator.Command(scene.message, 'what was sent')
-  release = timing.frames(
+  release = scene.agreement.frames(
     scene.schedule.end_s + config.Config().stillness.hold_s
   )
   with contextlib.closing(environment):
@@ -109,7 +108,7 @@ class _Studio:
     camera: Callable[[observer.Observer], observable.Observable],
     clock: processes.Clock,
   ) -> None:
-    self._clock = clock
+    self._clock, self._frame_s = clock, task.agreement.frame_s
     self._physics = mjcf.Physics.from_mjcf_model(task.root_entity.mjcf_model)
     self._draw = [
       camera(each).observation_callable(self._physics)
@@ -120,7 +119,7 @@ class _Studio:
     """Draws an image for every observer; returns the seconds of one."""
     data = self._physics.data
     data.qpos[:] = qpos
-    data.time += timing.FRAME_S
+    data.time += self._frame_s
     self._physics.forward()
     begin_s = self._clock()
     for draw in self._draw:

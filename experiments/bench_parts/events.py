@@ -11,7 +11,6 @@ from waggle_tasks.experiments.bench_parts import loops
 from waggle_tasks.experiments.episodes import rollout
 from waggle_tasks.experiments.record import writer
 from waggle_tasks.experiments.studies import job_progress, pool
-from waggle_tasks.protocol import timing
 
 
 @dataclasses.dataclass(frozen=True)
@@ -49,11 +48,9 @@ def compare(cases: Sequence[suites.Case], workers: int) -> Iterator[Verdict]:
     for camera in optics.CAMERAS
   ]
   logs: dict[str, dict[str, list[str]]] = {case.name: {} for case in cases}
-  frames = {
-    job.name: timing.frames(job.arguments[0].scene.episode_s) for job in jobs
-  }
+  lengths_s = {job.name: job.arguments[0].scene.episode_s for job in jobs}
   news = pool.run(jobs, workers)
-  for done in job_progress.shown(news, frames, lambda *_: 'events'):
+  for done in job_progress.shown(news, lengths_s, lambda *_: 'events'):
     case, camera = done.job.arguments
     found = logs[case.name]
     found[camera] = done.value

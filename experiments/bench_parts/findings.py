@@ -2,11 +2,11 @@
 
 from collections.abc import Sequence
 
-from waggle_tasks.entities import renderer
 from waggle_tasks.experiments.bench_parts import events, sameness
 from waggle_tasks.experiments.machine import table
+from waggle_tasks.protocol import camera
 
-_PIXELS = renderer.WIDTH * renderer.HEIGHT
+_PIXELS = camera.Camera.columns * camera.Camera.rows
 
 
 def pictures(found: Sequence[sameness.Comparison]) -> str:

@@ -12,7 +12,7 @@ from waggle_tasks.agents import observer_agent
 from waggle_tasks.experiments.bench_parts import processes
 from waggle_tasks.experiments.episodes import rollout
 from waggle_tasks.experiments.record import episode
-from waggle_tasks.protocol import timing
+from waggle_tasks.protocol import agreement
 
 RECEIVER = 'klt'
 
@@ -27,6 +27,7 @@ class Loop:
     loop_s: Seconds in the loop of these steps, by the clock that was given.
     whole_s: Seconds that passed in all, with building and closing.
     cpu_s: Processor seconds of the same, of all threads.
+    frame_s: Simulated seconds of a control step.
   """
 
   observers: int
@@ -34,11 +35,12 @@ class Loop:
   loop_s: float
   whole_s: float
   cpu_s: float
+  frame_s: float = agreement.Agreement().frame_s
 
   @property
   def simulated_s(self) -> float:
     """How long the broadcast was."""
-    return self.frames * timing.FRAME_S
+    return self.frames * self.frame_s
 
   @property
   def receiver_frame_s(self) -> float:
@@ -89,6 +91,7 @@ def run(
     watch.last_s - watch.first_s,
     time.perf_counter() - begin_s,
     time.process_time() - cpu_s,
+    scene.agreement.frame_s,
   )
 
 
@@ -102,5 +105,7 @@ def repeat(
   Returns:
     The loops in the order in which they ran.
   """
-  run(dataclasses.replace(scenes[0], duration_s=2 * timing.FRAME_S))
+  run(
+    dataclasses.replace(scenes[0], duration_s=2 * scenes[0].agreement.frame_s)
+  )
   return [run(scene, clock) for _ in range(repeats) for scene in scenes]

@@ -16,11 +16,13 @@ import numpy as np
 
 from waggle_tasks import appearance, registry, scenario
 from waggle_tasks.entities import crazyflie, renderer
+from waggle_tasks.protocol import camera as camera_lib
 
 MAX_LEVELS = 1  # Most grey levels by which the two may differ.
 _MAX_OBSERVERS = 8  # One of them looks at the other vehicles, up to eight.
 _STEPS = 20  # Changes of each scene.
 _DEPTHS_M = (0.08, 6.0)
+_LENS = camera_lib.Camera()
 _BEYOND_PX = 60  # How far outside of the picture a vehicle may be.
 
 
@@ -135,8 +137,7 @@ class _Scene:
     return chosen or [vehicles[self._rng.randint(len(vehicles))]]
 
   def _pixel(self) -> np.ndarray:  # (2,)
-    size = np.array([renderer.WIDTH, renderer.HEIGHT])
-    return self._rng.uniform(-_BEYOND_PX, size + _BEYOND_PX)
+    return self._rng.uniform(-_BEYOND_PX, np.array(_LENS.size) + _BEYOND_PX)
 
   def _depth_m(self) -> float:
     return float(np.exp(self._rng.uniform(*np.log(_DEPTHS_M))))
@@ -146,9 +147,8 @@ class _Scene:
   ) -> None:
     """Puts a vehicle where the first camera sees a pixel, turned anyhow."""
     eye = self.physics.bind(self._eyes[0])
-    focal_px = renderer.HEIGHT / 2 / np.tan(np.radians(eye.fovy) / 2)
-    x_px, y_px = pixel - np.array([renderer.WIDTH, renderer.HEIGHT]) / 2
-    in_eye = np.array([x_px / focal_px, -y_px / focal_px, -1.0]) * depth_m
+    x_px, y_px = (pixel - np.array(_LENS.size) / 2) / _LENS.focal_px
+    in_eye = np.array([x_px, -y_px, -1.0]) * depth_m
     position_m = eye.xpos + eye.xmat.reshape(3, 3) @ in_eye
     turn = self._rng.normal(size=4)
     vehicle.set_pose(self.physics, position_m, turn / np.linalg.norm(turn))
@@ -238,6 +238,6 @@ def _random_scenario(
 
 def _single_pass(physics: mjcf.Physics, camera: int) -> np.ndarray:
   """A picture drawn as a whole at twice the size, averaged over areas."""
-  width, height = renderer.WIDTH, renderer.HEIGHT
+  width, height = _LENS.size
   large = physics.render(2 * height, 2 * width, int(camera))
   return cv2.resize(large, (width, height), interpolation=cv2.INTER_AREA)

@@ -14,7 +14,7 @@ from waggle_tasks.experiments.bench_parts import (
   stages,
   workers,
 )
-from waggle_tasks.protocol import checks, symbols, timing
+from waggle_tasks.protocol import agreement, checks, symbols
 
 OBSERVERS = (1, 2, 4, 8, 16)
 BROADCASTS = 20  # How many in one process, for its memory.
@@ -52,7 +52,7 @@ class Settings:
     for name in self.receivers:
       receivers.make(name)
     if self.simulated_s is not None:
-      low, high = 2 * timing.FRAME_S, 600.0
+      low, high = 2 * agreement.Agreement().frame_s, 600.0
       checks.number('simulated_s', self.simulated_s, low, high, BenchError)
 
   @property

@@ -20,7 +20,6 @@ from waggle_tasks import scenario
 from waggle_tasks.agents import navigator, observer_agent, provenance, receivers
 from waggle_tasks.entities import renderer
 from waggle_tasks.experiments.bench_parts import loops, processes
-from waggle_tasks.protocol import timing
 from waggle_tasks.tasks import broadcast
 
 OTHER = 'other'
@@ -141,7 +140,7 @@ def measure(
   Returns:
     For each repeat the stages in the order of `STAGES`, and the rest.
   """
-  loops.run(dataclasses.replace(scene, duration_s=2 * timing.FRAME_S))
+  loops.run(dataclasses.replace(scene, duration_s=2 * scene.agreement.frame_s))
   names = dict.fromkeys([*(each.stage for each in STAGES), OTHER])
   out = []
   for _ in range(repeats):

@@ -8,7 +8,6 @@ import time
 
 from waggle_tasks import scenario
 from waggle_tasks.experiments.bench_parts import loops, processes
-from waggle_tasks.protocol import timing
 
 COUNTS = (1, 2)
 
@@ -23,7 +22,8 @@ def measure(scene: scenario.Scenario, repeats: int) -> dict[int, list[float]]:
   out: dict[int, list[float]] = {count: [] for count in COUNTS}
   with contextlib.ExitStack() as stack:
     team = [stack.enter_context(processes.worker()) for _ in range(max(COUNTS))]
-    _run(team, dataclasses.replace(scene, duration_s=2 * timing.FRAME_S))
+    two_s = 2 * scene.agreement.frame_s
+    _run(team, dataclasses.replace(scene, duration_s=two_s))
     for _ in range(repeats):
       for count in COUNTS:
         out[count].append(_run(team[:count], scene))

@@ -7,7 +7,6 @@ import numpy as np
 
 from waggle_tasks import registry, scenario
 from waggle_tasks.agents import observer_agent, receiver
-from waggle_tasks.protocol import timing
 
 Images = list[np.ndarray]
 Events = list[list[receiver.Event]]
@@ -108,7 +107,7 @@ def experiment(
   order = list(range(scene.observers))
   order[swap[0]], order[swap[1]] = swap[1], swap[0]
   try:
-    for _ in range(timing.frames(scene.episode_s)):
+    for _ in range(scene.agreement.frames(scene.episode_s)):
       images = own.images
       own.step(images)
       for probe in probes:

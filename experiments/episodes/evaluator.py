@@ -15,7 +15,7 @@ from waggle_tasks import scenario
 from waggle_tasks.agents import observer_agent, receiver
 from waggle_tasks.experiments.episodes import reasons
 from waggle_tasks.experiments.record import episode, verdicts
-from waggle_tasks.protocol import flight, timing
+from waggle_tasks.protocol import flight
 from waggle_tasks.tasks import progress, safety
 
 # A message is eight motions between nine nulls (paper, section 'Motion
@@ -185,22 +185,24 @@ def _fly(
 ) -> dict[str, Any]:
   """Arrival and hold at the place that was sent, by true positions."""
   positions_m, times_s = rollout.steady_m(name), rollout.times_s
-  begin = int(np.searchsorted(times_s, message_s - timing.FRAME_S / 2))
+  agreement = scene.agreement
+  frame_s = agreement.frame_s
+  begin = int(np.searchsorted(times_s, message_s - frame_s / 2))
   # An observer flies from where it was, drift and all, to the agreed height.
   target_m = rollout.positions_m[name][begin] + expected_displacement_m(scene)
-  target_m[2] = flight.HOVER_HEIGHT_M
+  target_m[2] = agreement.hover_height_m
   error_m = np.linalg.norm(positions_m - target_m, axis=1)
   speed_mps = (
     np.linalg.norm(
       np.diff(positions_m, axis=0, prepend=positions_m[:1]), axis=1
     )
-    / timing.FRAME_S
+    / frame_s
   )
   there = (error_m < flight.ARRIVAL_ERROR_M) & (
     speed_mps < flight.ARRIVAL_SPEED_MPS
   )
   there[: begin + 1] = False
-  dwell = timing.frames(flight.ARRIVAL_DWELL_S)
+  dwell = agreement.frames(flight.ARRIVAL_DWELL_S)
   arrival = next(
     (k for k in range(begin + dwell, len(there)) if there[k - dwell : k].all()),
     None,
@@ -211,7 +213,7 @@ def _fly(
     return {'error_m': last_m, 'failures': [reason]}
   left = np.flatnonzero(error_m[arrival:] >= flight.ARRIVAL_ERROR_M)
   stayed = int(left[0]) if left.size else len(there) - 1 - arrival
-  hold_s = stayed * timing.FRAME_S
+  hold_s = stayed * frame_s
   failures = []
   if hold_s < flight.HOLD_S - 1e-6:
     failures.append(f'hold: {hold_s:.2f} s, under {flight.HOLD_S:g} s')

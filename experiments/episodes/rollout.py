@@ -11,7 +11,6 @@ from waggle_tasks.agents import observer_agent
 from waggle_tasks.experiments.episodes import sight
 from waggle_tasks.experiments.record import episode, provenance
 from waggle_tasks.experiments.record import traces as traces_lib
-from waggle_tasks.protocol import timing
 
 # For whoever flies and needs nothing else of an episode.
 Event = episode.Event
@@ -50,6 +49,7 @@ def play(
 ) -> Rollout:
   """Plays an episode in an environment, with a new team; closes nothing."""
   task, truth, drifts, contacts = environment.task, [], [], []
+  frame_s = task.agreement.frame_s
   tracer = traces_lib.Tracer(len(team.agents))
   timestep = environment.reset()
   physics = environment.physics  # Resetting may compile a new one.
@@ -58,7 +58,7 @@ def play(
     truth.append(task.positions_m(physics))
     drifts.append(task.drifts_m())
     seen.note(physics, truth[-1]['performer'])
-    time_s = (len(truth) - 1) * timing.FRAME_S
+    time_s = (len(truth) - 1) * frame_s
     contacts += [(time_s, pair) for pair in task.contacts]
     action = team.step(timestep.observation)
     tracer.note(team)
@@ -75,7 +75,7 @@ def play(
       sorted([*agent.events, *refused], key=lambda event: event.time_s)
     )
   return Rollout(
-    np.arange(len(truth)) * timing.FRAME_S,
+    np.arange(len(truth)) * frame_s,
     {name: np.stack([p[name] for p in truth]) for name in truth[0]},
     tuple(contacts),
     events,

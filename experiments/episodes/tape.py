@@ -7,11 +7,11 @@ import numpy as np
 
 from waggle_tasks import registry, scenario
 from waggle_tasks.experiments.record import provenance
-from waggle_tasks.protocol import reference, timing
+from waggle_tasks.protocol import reference
 
 Stream = Iterator[tuple[np.ndarray, float]]  # Images and their times.
 _Part = tuple[tuple[slice, slice], np.ndarray]
-_REPORT_FRAMES = 50  # How often a flight says that it is alive.
+_REPORT_IMAGES = 50  # How often a flight says that it is alive.
 
 
 @dataclasses.dataclass(eq=False)
@@ -64,7 +64,7 @@ def record(
 
   Args:
     scene: The scenario.
-    report: Told now and then how many frames are done.
+    report: Told now and then how many seconds are done.
   """
   environment = registry.environment(scene)
   try:
@@ -80,8 +80,8 @@ def record(
         tape.add(seen['camera'], float(seen['time_s']))
       if timestep.last():
         return tapes
-      if len(tapes[0].times_s) % _REPORT_FRAMES == 0:
-        report(timing.frames(tapes[0].times_s[-1]))
+      if len(tapes[0].times_s) % _REPORT_IMAGES == 0:
+        report(tapes[0].times_s[-1])
       timestep = environment.step(rest)
   finally:
     environment.close()

@@ -33,7 +33,7 @@ def define() -> None:
     ' needs the extra [video]. Unset, VIEW.webm.',
   )
   flags.DEFINE_float(
-    'video_fps', layout.FPS, 'Pictures a simulated second, 25 at most.'
+    'video_fps', layout.FPS, 'Pictures a simulated second, --rate_hz at most.'
   )
   flags.DEFINE_float('video_scale', 1.0, 'Size of the video, 0.25 to 2.')
   flags.DEFINE_boolean(

@@ -11,12 +11,11 @@ import numpy as np
 from waggle_tasks.experiments.pages import flights, markup, plot
 from waggle_tasks.experiments.record import archive
 from waggle_tasks.experiments.results import palette
-from waggle_tasks.protocol import timing
 
 _SIDE = 460.0
 _STEP_SIDE = 130.0  # Of the drawing of one gesture.
 _MARGIN_M = 0.25
-_EVERY = 5  # Frames between the moments that the script knows.
+_EVERY_S = 0.2  # Between the moments that the script knows.
 _AXES = ('world x, m', 'y, m', 'height, m')
 
 Moment = list[float]  # Time in s, then x, y and z in m.
@@ -25,12 +24,13 @@ Moment = list[float]  # Time in s, then x, y and z in m.
 def ways(run: archive.Run) -> dict[str, list[Moment]]:
   """Where each vehicle was, to the millimetre, whenever that changed."""
   out: dict[str, list[Moment]] = {}
+  every = max(run.agreement.frames(_EVERY_S), 1)
   for name, way_m in run.positions_m.items():
     moments: list[Moment] = []
-    for frame in range(0, len(way_m), _EVERY):
+    for frame in range(0, len(way_m), every):
       place = [round(float(each), 3) for each in way_m[frame]]
       if not moments or moments[-1][1:] != place:
-        moments.append([round(frame * timing.FRAME_S, 2), *place])
+        moments.append([round(float(run.times_s[frame]), 3), *place])
     out[name] = moments
   return out
 

@@ -16,6 +16,7 @@ from waggle_tasks.experiments.record import episode, story
 from waggle_tasks.experiments.record import traces as traces_lib
 from waggle_tasks.protocol import agreement as agreement_lib
 from waggle_tasks.protocol import (
+  camera,
   clock,
   decoys,
   frame,
@@ -149,7 +150,18 @@ def read_agreement(config: Mapping) -> agreement_lib.Agreement:
     payload.Units(**scene['units']),
   )
   tolerance = clock.Tolerance(**scene['tolerance'])
-  return agreement_lib.Agreement(codebook, pauses, tolerance, units)
+  # A run of before these could be chosen had what is the default now.
+  usual = agreement_lib.Agreement
+  seen = camera.Camera.of(
+    scene.get('camera_width_px', camera.Camera.columns),
+    scene.get('camera_height_px', camera.Camera.rows),
+    scene.get('camera_fovy_deg', camera.FOVY_DEG),
+  )
+  return agreement_lib.Agreement(
+    codebook, pauses, tolerance, units, seen,
+    scene.get('rate_hz', usual.rate_hz),
+    scene.get('hover_height_m', usual.hover_height_m),
+  )  # fmt: skip
 
 
 def read_events(

@@ -23,6 +23,7 @@ import numpy as np
 
 from waggle_tasks import errors
 from waggle_tasks.agents import observer_agent
+from waggle_tasks.protocol import camera
 
 if TYPE_CHECKING:
   from dm_control import composer
@@ -30,12 +31,11 @@ if TYPE_CHECKING:
 
 FOLDER = 'raw'
 SUFFIX = '.capture'
-SHAPE = (480, 640, 3)  # Paper, section 'Scene, sensors, ...'.
 _MAGIC = b'waggle capture 1\n'
 _RECORD = struct.Struct('<dHHHHI')
 _CRC = struct.Struct('<I')
-_WORDS = 8  # Bytes that are compared at a time.
-_LARGEST = 2 * math.prod(SHAPE)  # No image's data is longer.
+_COLOURS = 3
+_WORD = 8  # Bytes that are compared at a time, where rows are whole words.
 
 
 class CaptureError(errors.WaggleError):
@@ -76,12 +76,12 @@ class Writer:
     """Adds an image.
 
     Args:
-      image: `SHAPE` uint8 RGB.
+      image: (H, W, 3) uint8 RGB, as large as those before.
       time_s: Its time.
     """
     if self._last is None:
-      left, top, right, bottom = 0, 0, SHAPE[1], SHAPE[0]
-      self._last = np.empty(SHAPE, np.uint8)
+      left, top, right, bottom = 0, 0, image.shape[1], image.shape[0]
+      self._last = np.empty_like(image)
     else:
       left, top, right, bottom = _changed(self._last, image)
     window = image[top:bottom, left:right]
@@ -103,16 +103,18 @@ def _changed(
   before: np.ndarray, after: np.ndarray
 ) -> tuple[int, int, int, int]:
   """The window in which two images differ: left, top, right, bottom."""
-  rows_of_words = SHAPE[0], -1
-  differs = before.reshape(rows_of_words).view(np.uint64) != (
-    np.ascontiguousarray(after).reshape(rows_of_words).view(np.uint64)
+  height, width, _ = before.shape
+  size = 1 if width * _COLOURS % _WORD else _WORD
+  rows_of_words, word = (height, -1), np.dtype(f'u{size}')
+  differs = before.reshape(rows_of_words).view(word) != (
+    np.ascontiguousarray(after).reshape(rows_of_words).view(word)
   )
   rows = np.flatnonzero(differs.any(axis=1))
   if not rows.size:
     return 0, 0, 0, 0
   words = np.flatnonzero(differs.any(axis=0))
-  left = int(words[0]) * _WORDS // SHAPE[2]
-  right = -(-(int(words[-1]) + 1) * _WORDS // SHAPE[2])
+  left = int(words[0]) * size // _COLOURS
+  right = -(-(int(words[-1]) + 1) * size // _COLOURS)
   return left, int(rows[0]), right, int(rows[-1]) + 1
 
 
@@ -120,7 +122,7 @@ def read(path: pathlib.Path) -> Iterator[tuple[np.ndarray, float]]:
   """Reads a capture, one image at a time.
 
   Yields:
-    Each image, `SHAPE` uint8 RGB, in a buffer that the next one overwrites,
+    Each image, (H, W, 3) uint8 RGB, in a buffer that the next one overwrites,
     and its time in s.
 
   Raises:
@@ -138,7 +140,8 @@ def _images(
 ) -> Iterator[tuple[np.ndarray, float]]:
   if file.read(len(_MAGIC)) != _MAGIC:
     raise CaptureError(f'{path} is not a capture: it begins otherwise')
-  image, count, crc = np.zeros(SHAPE, np.uint8), 0, zlib.crc32(_MAGIC)
+  image: np.ndarray | None = None
+  count, crc = 0, zlib.crc32(_MAGIC)
   while True:
     record = file.read(_RECORD.size)
     if len(record) < _RECORD.size:
@@ -151,15 +154,26 @@ def _images(
           f'{path} is damaged or cut short: its check sum is wrong'
         )
       return
-    fits = left + width <= SHAPE[1] and top + height <= SHAPE[0]
-    data = file.read(length) if fits and length < _LARGEST else b''
+    if image is None:  # Its window is the whole of it.
+      image = _blank(width, height)
+    fits = left + width <= image.shape[1] and top + height <= image.shape[0]
+    # No image's data is longer.
+    data = file.read(length) if fits and length < 2 * image.size else b''
     crc = zlib.crc32(data, crc)
-    window = _window(data, (height, width, SHAPE[2]))
-    if len(data) != length or window is None:
+    window = _window(data, (height, width, _COLOURS))
+    if len(data) != length or window is None or not image.size:
       raise CaptureError(f'{path} is damaged or cut short at image {count + 1}')
     image[top : top + height, left : left + width] = window
     count += 1
     yield image, time_s
+
+
+def _blank(width: int, height: int) -> np.ndarray:
+  """What windows are put into; nothing fits where no camera has the size."""
+  sides = width, height
+  if min(sides) < camera.MIN_SIDE_PX or max(sides) > camera.MAX_SIDE_PX:
+    return np.zeros((0, 0, _COLOURS), np.uint8)
+  return np.zeros((height, width, _COLOURS), np.uint8)
 
 
 def _window(data: bytes, shape: tuple[int, int, int]) -> np.ndarray | None:

@@ -4,18 +4,21 @@ from collections.abc import Sequence
 
 from waggle_tasks import errors, scenario
 from waggle_tasks.agents import description, receivers
-from waggle_tasks.protocol import timing
+from waggle_tasks.protocol import agreement as agreement_lib
 
 # A rest is seen from one image to another, and a gesture at either end of it
 # is seen a little later than it begins.
-_EDGES_S = 2 * timing.FRAME_S
+_EDGES = 2  # Times from one image to the next.
 
 
 class PauseError(errors.WaggleError):
   """A pause that is too short for a receiver to see that it is one."""
 
 
-def needed_s(receiver_name: str) -> float | None:
+def needed_s(
+  receiver_name: str,
+  agreement: agreement_lib.Agreement = agreement_lib.Agreement(),
+) -> float | None:
   """The shortest stillness between two motions that a receiver can confirm.
 
   That is what it asks a null to last, and what it takes before to see that the
@@ -23,16 +26,19 @@ def needed_s(receiver_name: str) -> float | None:
 
   Args:
     receiver_name: As `receivers.make` takes it.
+    agreement: What both sides know.
 
   Returns:
     Seconds; None for a receiver that does not tell.
   """
-  null = receivers.describe(receiver_name).null
-  return None if null is None else _needed_s(null)
+  null = receivers.describe(receiver_name, agreement).null
+  return None if null is None else _needed_s(null, agreement)
 
 
-def _needed_s(null: description.Null) -> float:
-  return round(null.hold_s + null.end_s + _EDGES_S, 6)
+def _needed_s(
+  null: description.Null, agreement: agreement_lib.Agreement
+) -> float:
+  return round(null.hold_s + null.end_s + _EDGES * agreement.frame_s, 6)
 
 
 def flaw(
@@ -48,7 +54,8 @@ def flaw(
   null = receivers.describe(receiver_name, scene.agreement).null
   if null is None:
     return None
-  hold_s, least_s, pauses = null.hold_s, _needed_s(null), scene.pauses
+  hold_s, pauses = null.hold_s, scene.pauses
+  least_s = _needed_s(null, scene.agreement)
   if pauses.initial_hover_s < hold_s - 1e-6:
     return (
       f'{pauses.initial_hover_s:.2f} s before START, of which a null of'

@@ -57,7 +57,7 @@ def write_run(
   result = {
     'passed': verdict.passed,
     'correct': verdict.correct,
-    'simulated_s': round(float(rollout.times_s[-1]), 2),
+    'simulated_s': round(float(rollout.times_s[-1]), 3),
   }
   texts = {
     'config.json': encoding.pretty(config(scene, receiver_name)),

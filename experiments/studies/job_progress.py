@@ -8,18 +8,19 @@ import tqdm
 from waggle_tasks.agents import observer_agent
 from waggle_tasks.experiments.record import episode
 from waggle_tasks.experiments.studies import pool
-from waggle_tasks.protocol import timing
+from waggle_tasks.protocol import agreement
 
 if TYPE_CHECKING:
   from dm_control import composer
   import dm_env
 
 _FORM = '{desc}|{bar}| {n:.0f}/{total:.0f} s simulated [{elapsed} <'
-_REPORT_FRAMES = 50  # How often an episode says that it is alive.
+_REPORT_S = 2.0  # How often an episode says that it is alive.
 
 
 def reporter(report: Callable[[float], None]) -> episode.Watcher:
-  """What watches an episode and reports how many frames are done."""
+  """What watches an episode and reports how many seconds are done."""
+  due_s = 0.0
 
   def watch(
     environment: 'composer.Environment',
@@ -27,55 +28,68 @@ def reporter(report: Callable[[float], None]) -> episode.Watcher:
     team: observer_agent.Team,
   ) -> None:
     del team
-    frame = timing.frames(environment.physics.time())
-    if timestep.last() or frame % _REPORT_FRAMES == 0:
-      report(frame)
+    nonlocal due_s
+    time_s = environment.physics.time()
+    if timestep.last() or time_s >= due_s:
+      due_s = time_s + _REPORT_S
+      report(time_s)
 
   return watch
 
 
-def seconds_bar(frames: int, **look: object) -> tqdm.tqdm:
-  """A bar that counts frames and shows them as simulated seconds.
+def ticks(duration_s: float) -> int:
+  """The physics steps of a duration: what bars count, at any rate of images.
 
   Seconds that are added up one frame after the other end beside their total,
   and often beyond it; whole numbers do not.
+  """
+  return round(duration_s * agreement.STEPS_HZ)
+
+
+def seconds_bar(duration_s: float, **look: object) -> tqdm.tqdm:
+  """A bar that counts `ticks` and shows them as simulated seconds.
 
   Args:
-    frames: How many there are.
+    duration_s: How much there is to simulate.
     **look: What else `tqdm` takes.
   """
   return tqdm.tqdm(
-    total=frames, unit_scale=timing.FRAME_S, mininterval=0.5, **look
+    total=ticks(duration_s),
+    unit_scale=1 / agreement.STEPS_HZ,
+    mininterval=0.5,
+    **look,
   )
 
 
 def shown(
   news: Iterable[pool.Progress | pool.Done],
-  frames: Mapping[str, int],
+  lengths_s: Mapping[str, float],
   describe: Callable[[int, Sequence[str]], str],
 ) -> Iterator[pool.Done]:
   """Shows a bar of simulated seconds, and hands on the jobs that are done.
 
   Args:
-    news: What happens; the amount of a job's progress is its frames.
-    frames: By the name of each job how many frames it simulates at most.
+    news: What happens; the amount of a job's progress is its seconds.
+    lengths_s: By the name of each job how many seconds it simulates at most.
     describe: The words before the bar, from how many jobs are done and the
       names of those that are under way.
   """
   flown: dict[str, int] = {}
   active: dict[str, bool] = {}
   done = 0
-  total = sum(frames.values())
+  lengths = {name: ticks(each_s) for name, each_s in lengths_s.items()}
   form = _FORM + ' {remaining}]'
-  with seconds_bar(total, smoothing=0, bar_format=form) as bar:
+  with seconds_bar(
+    sum(lengths_s.values()), smoothing=0, bar_format=form
+  ) as bar:
     for each in news:
       name, before = each.job.name, flown.get(each.job.name, 0)
       if isinstance(each, pool.Progress):
-        flown[name] = min(int(each.amount), frames[name])
+        flown[name] = min(ticks(each.amount), lengths[name])
         active[name] = True
       else:
         yield each
-        flown[name] = frames[name]  # Episodes may end before their time.
+        flown[name] = lengths[name]  # Episodes may end before their time.
         active.pop(name, None)
         done += 1
       bar.set_description_str(f'{describe(done, [*active])} ', refresh=False)

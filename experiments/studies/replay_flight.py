@@ -27,7 +27,7 @@ def fly(
   """Runs a case; called in a worker.
 
   Args:
-    report: Told now and then how many frames are done.
+    report: Told now and then how many seconds are done.
     case: The case.
     receiver_name: The receiver.
     identity: See `identity.of`.
@@ -53,13 +53,13 @@ def fly(
       place = sweep_flight.place(poses[f'observer_{number}'])
       outcomes.append({**_exposure(outcome, spoiling, events), **place})
       # All observers of one replay are as much as the flight.
-      report((1 + len(outcomes) / len(tapes)) * len(tape.times_s))
+      report((1 + len(outcomes) / len(tapes)) * tape.times_s[-1])
   whole = {
     **sweep_flight.head(case),
     'identity': identity,
     'receiver': receiver_name,
     'renderer': tapes[0].renderer,
-    'simulated_s': round(tapes[0].times_s[-1], 2),
+    'simulated_s': round(tapes[0].times_s[-1], 3),
     'passed': all(each['right'] for each in outcomes),
     'outcomes': outcomes,
     'scenario': case.values,

@@ -34,7 +34,7 @@ def fly(
   """Runs a case and leaves its sealed run folder; called in a worker.
 
   Args:
-    report: Told now and then how many frames are done.
+    report: Told now and then how many seconds are done.
     case: The case.
     receiver_name: The receiver.
     identity_: Its identity.

@@ -23,7 +23,6 @@ from waggle_tasks.experiments.record import (
   writer,
 )
 from waggle_tasks.experiments.studies import job_progress, pool, suite_case
-from waggle_tasks.protocol import timing
 
 _CASES, _DRAFTS = 'cases', '.drafts'
 _TABLES = 'results.jsonl', 'results.csv', archive.PAGE
@@ -120,15 +119,13 @@ def _size(case: suites.Case) -> float:
 
 
 def _fly(jobs: Sequence[pool.Job], folder: pathlib.Path, workers: int) -> None:
-  """Runs jobs behind a progress bar of simulated frames."""
+  """Runs jobs behind a progress bar of simulated seconds."""
   (folder / _CASES).mkdir(exist_ok=True)
-  lengths = {
-    job.name: timing.frames(job.arguments[0].scene.episode_s) for job in jobs
-  }
+  lengths_s = {job.name: job.arguments[0].scene.episode_s for job in jobs}
   # Closed here, whatever happens: no worker writes after that.
   with contextlib.closing(pool.run(jobs, workers)) as news:
     for done in job_progress.shown(
-      news, lengths, lambda _, active: ', '.join(active)
+      news, lengths_s, lambda _, active: ', '.join(active)
     ):
       name = done.job.name
       if done.value is not None:

@@ -21,7 +21,7 @@ def fly(
   """Runs a case; called in a worker.
 
   Args:
-    report: Told now and then how many frames are done.
+    report: Told now and then how many seconds are done.
     case: The case.
     receiver_name: The receiver.
     identity: See `identity.of`.

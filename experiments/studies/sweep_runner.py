@@ -24,7 +24,6 @@ from waggle_tasks.experiments.studies import (
   sweep_flight,
   sweep_results,
 )
-from waggle_tasks.protocol import timing
 
 # After how many cases the sources are looked at again.
 _CHECK_CASES = 50
@@ -125,9 +124,8 @@ def _fly(
     total: How many cases there are, those that were flown before included.
     shows: How often the images of each are seen, the flight included.
   """
-  frames = {
-    job.name: shows * timing.frames(job.arguments[0].scene.episode_s)
-    for job in jobs
+  lengths_s = {
+    job.name: shows * job.arguments[0].scene.episode_s for job in jobs
   }
   known = total - len(jobs)
 
@@ -135,7 +133,7 @@ def _fly(
     del active
     return f'{known + done}/{total} cases'
 
-  for done in job_progress.shown(engine(jobs), frames, describe):
+  for done in job_progress.shown(engine(jobs), lengths_s, describe):
     yield done.value
 
 

@@ -11,7 +11,7 @@ from waggle_tasks import scenario
 from waggle_tasks.agents import observer_agent
 from waggle_tasks.experiments.record import changes, story
 from waggle_tasks.experiments.video import encoders, layout, lens, page
-from waggle_tasks.protocol import checks, timing
+from waggle_tasks.protocol import checks
 
 # Of a scenario, what its title or the pictures themselves say.
 _TOLD = ('control', 'payload', 'layout', 'distance_m', 'observers')
@@ -44,7 +44,7 @@ class Film:
       name: Of the file, named after the view when None; its ending chooses
         the codec. Pages after the first get a number.
       view: 'composite', an observer's name, or one of `layout.SHARED`.
-      fps: Pictures a simulated second, at most the 25 that there are.
+      fps: Pictures a simulated second, at most those that there are.
       scale: Size.
       marks: Whether a single view shows what its receiver makes of it.
 
@@ -56,9 +56,9 @@ class Film:
     names = [f'observer_{k + 1}' for k in range(scene.observers)]
     views = [layout.COMPOSITE, *names, *layout.SHARED]
     checks.choice('view', view, views, layout.VideoError)
-    fastest = timing.FRAME_RATE_HZ
-    checks.number('video_fps', fps, 0.1, fastest, layout.VideoError)
-    self._fps, self._pictures = fps, 0
+    agreement = scene.agreement
+    checks.number('video_fps', fps, 0.1, agreement.rate_hz, layout.VideoError)
+    self._step, self._pictures = agreement.rate_hz / fps, 0
     if view == layout.COMPOSITE:
       self._lens = lens.Lens(scene)
       shown = layout.pages(names)
@@ -68,7 +68,8 @@ class Film:
     else:
       self._lens = lens.Lens(scene, [n for n in layout.SHARED if n == view])
       shown = [tuple(n for n in names if n == view)]
-      plans = [page.Single(view, scale, marks)]
+      size = agreement.camera.size if view in names else layout.VIEW_PX
+      plans = [page.Single(view, scale, marks, size)]
     paths = page_paths(folder / name, len(plans))
     # Of each page: the observers it shows, how it is drawn, who encodes it.
     self._pages = [
@@ -103,7 +104,7 @@ class Film:
   ) -> None:
     """Looks at a frame, and films it when the video has a picture for it."""
     self._lens.note(environment, timestep, team)
-    due = round(self._pictures * timing.FRAME_RATE_HZ / self._fps)
+    due = round(self._pictures * self._step)
     if self._lens.frame < due:
       return
     self._pictures += 1

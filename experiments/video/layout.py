@@ -4,8 +4,10 @@ from collections.abc import Sequence
 import dataclasses
 import itertools
 
+import numpy as np
+
 from waggle_tasks import errors
-from waggle_tasks.protocol import checks
+from waggle_tasks.protocol import camera, checks
 
 PER_PAGE = 5  # Observers beside the shared views; more get pages of their own.
 COMPOSITE = 'composite'  # The view of everyone.
@@ -16,7 +18,7 @@ SHARED = {
 }  # Name of a view -> name of its camera.
 
 FPS = 5.0  # Every fifth frame: cheap beside the run.
-VIEW_PX = (640, 480)  # Of an observer's image, and of a single view.
+VIEW_PX = camera.Camera().size  # Of a shared view.
 
 _WIDTH = 1024
 _GAP = 6
@@ -55,6 +57,24 @@ class Rect:
   def slices(self) -> tuple[slice, slice]:
     """Rows and columns."""
     return slice(self.top, self.bottom), slice(self.left, self.right)
+
+
+def fitted(place: Rect, image: np.ndarray) -> Rect:
+  """The largest part of a place, in its middle, with the shape of an image."""
+  height, width = image.shape[:2]
+  zoom = min(place.width / width, place.height / height)
+  beside, above = (
+    (there - round(zoom * here)) // 2
+    for there, here in ((place.width, width), (place.height, height))
+  )
+  if max(beside, above) < 1:  # But for rounding it fills all of it.
+    return place
+  return Rect(
+    place.left + beside,
+    place.top + above,
+    place.width - 2 * beside,
+    place.height - 2 * above,
+  )
 
 
 @dataclasses.dataclass(frozen=True)

@@ -13,7 +13,6 @@ from waggle_tasks.agents import observer_agent
 from waggle_tasks.entities import renderer
 from waggle_tasks.experiments.record import story
 from waggle_tasks.experiments.video import layout, moment
-from waggle_tasks.protocol import timing
 
 
 class Lens:
@@ -33,6 +32,7 @@ class Lens:
       shared: Which of `layout.SHARED` moments have images of.
     """
     self._sent = story.sent_in(scene)
+    self._frame_s = scene.agreement.frame_s
     self._shared = {name: layout.SHARED[name] for name in shared}
     self._shadows = scene.appearance.shadows
     self._watches: dict[str, moment.Watch] = {}
@@ -71,7 +71,7 @@ class Lens:
       names: The observers it shows.
       shared: What `shared` returned in this frame.
     """
-    time_s = self.frame * timing.FRAME_S
+    time_s = self.frame * self._frame_s
     images = {
       name: observation['camera']
       for name, observation in zip(

@@ -13,7 +13,7 @@ from waggle_tasks.experiments.episodes import rollout as rollout_lib
 from waggle_tasks.experiments.record import story, traces
 from waggle_tasks.experiments.results import palette
 from waggle_tasks.experiments.video import film, layout, lens, page, pen
-from waggle_tasks.protocol import timing
+from waggle_tasks.protocol import agreement as agreement_lib
 from waggle_tasks.protocol.symbols import MOTIONS
 
 _TIME_S = 78.6  # Of the composite: in the last bit, with the others read.
@@ -37,10 +37,11 @@ class Shots:
     self._lens = lens.Lens(scene)
     self._names = tuple(f'observer_{k + 1}' for k in range(scene.observers))
     self._page = film.composite(scene, self._names)
+    self._at = scene.agreement.frames(_TIME_S)
     self._wanted = {
       frame
       for gesture in firsts(story.sent_in(scene))
-      for frame in exposures(gesture)
+      for frame in exposures(gesture, scene.agreement)
     }
     self.composite: np.ndarray | None = None
     self.images: dict[int, np.ndarray] = {}
@@ -54,7 +55,7 @@ class Shots:
     """Keeps what belongs to this frame."""
     self._lens.note(environment, timestep, team)
     frame = self._lens.frame
-    if frame == timing.frames(_TIME_S):
+    if frame == self._at:
       now = self._lens.moment(self._names, self._lens.shared())
       self.composite = self._page.draw(now).copy()
     if frame in self._wanted:
@@ -68,10 +69,12 @@ def firsts(sent: Sequence[story.Sent]) -> list[story.Sent]:
   ]
 
 
-def exposures(gesture: story.Sent) -> list[int]:
+def exposures(
+  gesture: story.Sent, agreement: agreement_lib.Agreement
+) -> list[int]:
   """The frames in which the performer is shown on its way."""
   times_s = np.linspace(gesture.begin_s, gesture.end_s, 2 * _EXPOSURES - 1)
-  return [timing.frames(time_s) for time_s in times_s]
+  return [agreement.frames(time_s) for time_s in times_s]
 
 
 def take(receiver_name: str) -> dict[str, np.ndarray]:  # (H, W, 3) uint8 each
@@ -90,7 +93,9 @@ def take(receiver_name: str) -> dict[str, np.ndarray]:  # (H, W, 3) uint8 each
   sent, trace = story.sent_in(scene), [*flown.traces.values()][_OBSERVER]
   return {
     'composite.png': np.asarray(shots.composite),
-    'gestures.png': gestures(firsts(sent), shots.images, trace),
+    'gestures.png': gestures(
+      firsts(sent), shots.images, trace, scene.agreement
+    ),
   }
 
 
@@ -98,6 +103,7 @@ def gestures(
   sent: Sequence[story.Sent],
   images: Mapping[int, np.ndarray],
   trace: traces.Trace,
+  agreement: agreement_lib.Agreement,
 ) -> np.ndarray:  # (H, W, 3) uint8
   """The gestures in two rows of two.
 
@@ -105,6 +111,7 @@ def gestures(
     sent: One of each.
     images: By frame number, what an observer saw.
     trace: What its receiver made of it.
+    agreement: What both sides know: the rate.
   """
   step = layout.Rect(0, 0, _CROP.width + _GAP, _CROP.height + _TITLE + _GAP)
   canvas = np.zeros(
@@ -118,7 +125,8 @@ def gestures(
       trace.times_s <= gesture.end_s
     )
     picture = _exposed(
-      [images[frame] for frame in exposures(gesture)], trace.centre_px[during]
+      [images[frame] for frame in exposures(gesture, agreement)],
+      trace.centre_px[during],
     )
     place = layout.Rect(left, top + _TITLE, _CROP.width, _CROP.height)
     canvas[place.slices] = picture[_CROP.slices]

@@ -28,9 +28,12 @@ def observer(
   sight: moment.Sight,
 ) -> None:
   """Draws an observer's image with its track, its state and its symbols."""
-  place(canvas, picture, sight.image)
+  within = layout.fitted(picture, sight.image)
+  if within != picture:
+    pen.fill(canvas, picture, BAR)
+  place(canvas, within, sight.image)
   if not sight.reading.deed:
-    _marks(canvas[picture.slices], plan, sight)
+    _marks(canvas[within.slices], plan, sight)
   title = plan.title(picture)
   _bar(canvas, plan, title, sight.name)
   name_px = pen.width_px(sight.name, plan.px(_SIZE), pen.BOLD)

@@ -10,9 +10,6 @@ import numpy as np
 
 from waggle_tasks.protocol import minimum_jerk
 
-# Where everybody hovers and where a message leads to (paper, sections 'Scene,
-# sensors, and information boundaries' and 'Per-observer navigation').
-HOVER_HEIGHT_M = 1.3
 # With 3 s for the paper's 0.4 m, 'near and slow enough' begins after 2.742 s,
 # and 0.4 s later is the paper's arrival, 3.144 s after the final null
 # (98.784 s and 95.64 s, section 'Local faults and independent release').
@@ -25,18 +22,21 @@ ARRIVAL_DWELL_S = 0.4
 HOLD_S = 2.0
 
 
-def goal_m(begin_m: np.ndarray, displacement_m: np.ndarray) -> np.ndarray:
+def goal_m(
+  begin_m: np.ndarray, displacement_m: np.ndarray, height_m: float
+) -> np.ndarray:
   """Where a message leads to: equation 2, at the agreed height.
 
   Args:
     begin_m: (3,) where its reader hovers, at whatever height.
     displacement_m: (3,) what it commands.
+    height_m: The agreed height.
 
   Returns:
     (3,) world metres.
   """
   goal_m = begin_m + displacement_m
-  goal_m[2] = HOVER_HEIGHT_M
+  goal_m[2] = height_m
   return goal_m
 
 

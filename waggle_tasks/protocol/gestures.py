@@ -176,6 +176,16 @@ class Codebook:
           f' paths {distance:.3f} apart, under {MINIMUM_SEPARATION}'
         )
 
+  @property
+  def lowest_m(self) -> float:
+    """How high its lowest point is, from the hover point: negative below."""
+    return min(z_m for each in self.gestures for _, z_m in each.corners_m)
+
+  @property
+  def highest_m(self) -> float:
+    """How high its highest point is, from the hover point."""
+    return max(z_m for each in self.gestures for _, z_m in each.corners_m)
+
   def __getitem__(self, symbol: Symbol) -> Gesture:
     for gesture in self.gestures:
       if gesture.symbol is symbol:

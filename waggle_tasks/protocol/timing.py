@@ -5,18 +5,9 @@ import dataclasses
 from waggle_tasks import errors
 from waggle_tasks.protocol import checks
 
-# Image and control rate: 25 Hz (paper, section 'Evaluation protocol').
-FRAME_RATE_HZ = 25
-FRAME_S = 1 / FRAME_RATE_HZ
-
 
 class TimingError(errors.WaggleError):
   """A pause that is negative, endless or not a number."""
-
-
-def frames(duration_s: float) -> int:
-  """The number of camera frames nearest to a duration."""
-  return round(duration_s * FRAME_RATE_HZ)
 
 
 @dataclasses.dataclass(frozen=True)

@@ -10,7 +10,7 @@ import numpy as np
 
 from waggle_tasks.arenas import flight_room, layouts
 from waggle_tasks.entities import controller, observer, performer
-from waggle_tasks.protocol import timing
+from waggle_tasks.protocol import agreement as agreement_lib
 from waggle_tasks.tasks import (
   actions,
   contacts,
@@ -22,7 +22,6 @@ from waggle_tasks.tasks import (
 from waggle_tasks.tasks import clock as clock_lib
 from waggle_tasks.tasks import parts as parts_lib
 
-PHYSICS_TIMESTEP_S = 0.004
 OBSERVATIONS = ('camera', 'time_s', 'position_m')
 
 
@@ -30,10 +29,10 @@ class Broadcast(copies.Uncopied, composer.Task):
   """Observers see a dance, each through its own eye, and fly its message.
 
   Observations are a list of dicts, one for each observer: `camera`
-  (480, 640, 3) uint8, `time_s` () float64 and `position_m` (3,) float64.
-  Actions are a list of (13,) float64 arrays, see `reference.Reference`: the
-  reference for the middle of the coming 0.04 s. What a reference asks for is
-  judged by `safety`.
+  (H, W, 3) uint8 of the agreed camera, `time_s` () float64 and `position_m`
+  (3,) float64. Actions are a list of (13,) float64 arrays, see
+  `reference.Reference`: the reference for the middle of the coming frame. What
+  a reference asks for is judged by `safety`.
 
   Rewards are a list of floats: 1 when an observer has arrived where the
   message says, -1 when it first moves before the message is complete. The
@@ -63,7 +62,12 @@ class Broadcast(copies.Uncopied, composer.Task):
     for visible in self.observables:
       for name in OBSERVATIONS:
         visible[name].enabled = True
-    self.set_timesteps(timing.FRAME_S, PHYSICS_TIMESTEP_S)
+    self.set_timesteps(self.agreement.frame_s, 1 / agreement_lib.STEPS_HZ)
+
+  @property
+  def agreement(self) -> agreement_lib.Agreement:
+    """What both sides know."""
+    return self._parts.agreement
 
   @property
   def root_entity(self) -> flight_room.FlightRoom:
@@ -98,7 +102,9 @@ class Broadcast(copies.Uncopied, composer.Task):
     Raises:
       ClockError: if it is not, or if the physics step is too long.
     """
-    clock_lib.check_timesteps(control_timestep, physics_timestep)
+    clock_lib.check_timesteps(
+      control_timestep, physics_timestep, self.agreement
+    )
     super().set_timesteps(control_timestep, physics_timestep)
 
   @composer.Task.control_timestep.setter
@@ -149,7 +155,7 @@ class Broadcast(copies.Uncopied, composer.Task):
         np.array(pose.position_m),
         np.array([math.cos(half_rad), 0.0, 0.0, math.sin(half_rad)]),
       )
-    self._clock = clock_lib.Clock(physics)
+    self._clock = clock_lib.Clock(physics, self.agreement)
     self._begin_dance()
     self._begin_flights()
 
@@ -157,11 +163,12 @@ class Broadcast(copies.Uncopied, composer.Task):
     """Lets every observer wait at its place."""
     displacement_m = None
     if self.sends_message:
-      displacement_m = self._parts.message.displacement_m(self._parts.units)
+      displacement_m = self._parts.message.displacement_m(self.agreement.units)
     self._flights = flights.Flights(
       {n: np.array(self._homes[n].position_m) for n in self._observers},
       displacement_m,
       self._parts.minimum_spacing_m,
+      self.agreement,
     )
     self._rewards = [0.0] * len(self._observers)
     self._contacts: tuple[tuple[str, str], ...] = ()
@@ -229,7 +236,9 @@ class Broadcast(copies.Uncopied, composer.Task):
     turn_rad: float = 0.0,
   ) -> None:
     """Commands a vehicle to where it drifts from where it should be."""
-    drift = self._wanders[name].at((self._clock.frame + 0.5) * timing.FRAME_S)
+    drift = self._wanders[name].at(
+      (self._clock.frame + 0.5) * self.agreement.frame_s
+    )
     place_m, velocity_mps, acceleration_mps2 = (
       each + off[:3] for each, off in zip(motion, drift, strict=True)
     )
@@ -311,7 +320,7 @@ class Broadcast(copies.Uncopied, composer.Task):
     del physics
     return (
       bool(self._contacts)
-      or self._clock.frame >= timing.frames(self._parts.duration_s)
+      or self._clock.frame >= self.agreement.frames(self._parts.duration_s)
       or self._flights.done
     )
 

@@ -10,7 +10,7 @@ from dm_control import mjcf
 import numpy as np
 
 from waggle_tasks import errors
-from waggle_tasks.protocol import timing
+from waggle_tasks.protocol import agreement as agreement_lib
 
 # Above what summing physics steps and normalising quaternions leave.
 _SAME = 1e-6
@@ -27,16 +27,19 @@ class ClockError(errors.WaggleError):
   """A time, or a time step, in which the dance cannot be flown."""
 
 
-def check_timesteps(control_s: float, physics_s: float) -> None:
+def check_timesteps(
+  control_s: float, physics_s: float, agreement: agreement_lib.Agreement
+) -> None:
   """Refuses time steps at which the agreed language is not what is flown.
 
   Raises:
     ClockError: naming the time step, the rule and the value.
   """
-  if not abs(control_s - timing.FRAME_S) <= 1e-9:
+  if not abs(control_s - agreement.frame_s) <= 1e-9:
     raise ClockError(
-      f'`control_timestep` must be {timing.FRAME_S:g} s, as images, references'
-      f' and the dance come at {timing.FRAME_RATE_HZ} Hz: got {control_s!r}'
+      f'`control_timestep` must be {agreement.frame_s:g} s, as images,'
+      f' references and the dance come at {agreement.rate_hz:g} Hz, the'
+      f' `rate_hz` of the scenario: got {control_s!r}'
     )
   if not 0 < physics_s <= MAX_PHYSICS_TIMESTEP_S:
     raise ClockError(
@@ -52,20 +55,23 @@ class Clock:
     frame: How many frames the episode is old.
   """
 
-  def __init__(self, physics: mjcf.Physics) -> None:
+  def __init__(
+    self, physics: mjcf.Physics, agreement: agreement_lib.Agreement
+  ) -> None:
     """Begins an episode."""
+    self._agreement = agreement
     self.frame = 0
     self._note(physics)
 
   @property
   def time_s(self) -> float:
     """The time of the frame."""
-    return self.frame * timing.FRAME_S
+    return self.frame * self._agreement.frame_s
 
   @property
   def middle_s(self) -> float:
     """The middle of the control step that follows the frame."""
-    return self.time_s + timing.FRAME_S / 2
+    return self.time_s + self._agreement.frame_s / 2
 
   def tick(self, physics: mjcf.Physics) -> None:
     """Takes the end of a control step."""
@@ -74,7 +80,7 @@ class Clock:
 
   def set(self, physics: mjcf.Physics) -> None:
     """Takes the time that the physics was set to."""
-    self.frame = timing.frames(physics.time())
+    self.frame = self._agreement.frames(physics.time())
     self._note(physics)
 
   def was_set(self, physics: mjcf.Physics) -> bool:
@@ -86,13 +92,14 @@ class Clock:
     Raises:
       ClockError: if it is no frame's, or if the state was set without it.
     """
-    time_s = physics.time()
-    if abs(time_s - timing.frames(time_s) * timing.FRAME_S) > _SAME:
+    time_s, frame_s = physics.time(), self._agreement.frame_s
+    frame = self._agreement.frames(time_s)
+    if abs(time_s - frame * frame_s) > _SAME:
       raise ClockError(
         f'`time` of the physics must be a whole number of frames of'
-        f' {timing.FRAME_S:g} s when the environment steps: got {time_s:g} s'
+        f' {frame_s:g} s when the environment steps: got {time_s:g} s'
       )
-    if timing.frames(time_s) != self.frame:
+    if frame != self.frame:
       return True
     if np.abs(_state(physics) - self._state).max() > _SAME:
       raise ClockError(

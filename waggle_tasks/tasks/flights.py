@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from waggle_tasks.protocol import agreement as agreement_lib
 from waggle_tasks.protocol import flight, reference
 from waggle_tasks.tasks import progress, safety
 
@@ -16,6 +17,7 @@ class Flights:
     homes_m: Mapping[str, np.ndarray],
     displacement_m: np.ndarray | None,
     minimum_spacing_m: float,
+    agreement: agreement_lib.Agreement,
   ) -> None:
     """Lets every observer wait at its place.
 
@@ -23,6 +25,7 @@ class Flights:
       homes_m: By observer name, (3,) where it begins.
       displacement_m: (3,) what is commanded to all, or None for nothing.
       minimum_spacing_m: Smallest distance allowed between two vehicles.
+      agreement: What both sides know: the rate and the height.
     """
     self._minimum_spacing_m = minimum_spacing_m
     self._gates: list[safety.Gate] = []
@@ -33,8 +36,10 @@ class Flights:
       self._gates.append(safety.Gate(name, hold))
       target_m = None
       if displacement_m is not None:
-        target_m = flight.goal_m(home_m, displacement_m)
-      self._progress.append(progress.Progress(home_m, target_m))
+        target_m = flight.goal_m(
+          home_m, displacement_m, agreement.hover_height_m
+        )
+      self._progress.append(progress.Progress(home_m, target_m, agreement))
 
   @property
   def begun(self) -> bool:

@@ -5,6 +5,7 @@ import math
 
 from waggle_tasks.arenas import flight_room, layouts
 from waggle_tasks.entities import board, bystander
+from waggle_tasks.protocol import agreement as agreement_lib
 from waggle_tasks.tasks import surroundings as surroundings_lib
 
 # The board passes half of the way to the nearest observer, where that is
@@ -19,6 +20,7 @@ def furnish(
   room: flight_room.FlightRoom,
   surroundings: surroundings_lib.Surroundings,
   poses: Mapping[str, layouts.Pose],
+  agreement: agreement_lib.Agreement,
 ) -> None:
   """Adds what there is to a room; with the defaults nothing.
 
@@ -26,16 +28,21 @@ def furnish(
     room: The room.
     surroundings: What moves in it.
     poses: Where the vehicles start, the performer first.
+    agreement: What both sides know.
   """
   audience = surroundings_lib.Audience.of(poses)
   for number in range(surroundings.bystanders):
-    middle_m = audience.place_m(*surroundings_lib.PLACES_M[number])
+    right_m, away_m, up_m = surroundings_lib.PLACES_M[number]
+    middle_m = audience.place_m(
+      right_m, away_m, agreement.hover_height_m + up_m
+    )
     room.add_guided(
       bystander.Bystander(
         f'bystander_{number + 1}',
         middle_m,
         surroundings_lib.CIRCLE_M,
         surroundings_lib.SPREAD_M,
+        agreement,
       )
     )
   if surroundings.occluder_every_s:
@@ -47,5 +54,6 @@ def furnish(
         surroundings.occluder_width_m,
         surroundings.occluder_mps,
         surroundings.occluder_every_s,
+        agreement,
       )
     )

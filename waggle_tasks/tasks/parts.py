@@ -1,10 +1,11 @@
-"""What a task is made of: built entities and the agreed language."""
+"""What a task is made of: built entities and what both sides know."""
 
 from collections.abc import Mapping
 import dataclasses
 
 from waggle_tasks.arenas import flight_room, layouts
 from waggle_tasks.entities import observer, performer
+from waggle_tasks.protocol import agreement as agreement_lib
 from waggle_tasks.protocol import payload, schedule
 from waggle_tasks.tasks import drift as drift_lib
 from waggle_tasks.tasks import safety
@@ -22,7 +23,7 @@ class Parts:
     dance: What the performer flies.
     message: What the dance says.
     duration_s: How long an episode lasts at most.
-    units: The agreed heading step and distance unit.
+    agreement: What both sides know.
     jitter_m: Bound of each vehicle's initial x and y offset.
     minimum_spacing_m: Smallest distance allowed between two vehicles.
     drift: How far vehicles wander from their references.
@@ -35,7 +36,7 @@ class Parts:
   dance: schedule.Schedule
   message: payload.Payload
   duration_s: float
-  units: payload.Units = payload.Units()
+  agreement: agreement_lib.Agreement = agreement_lib.Agreement()
   jitter_m: float = 0.0
   minimum_spacing_m: float = safety.MINIMUM_SPACING_M
   drift: drift_lib.Drift = drift_lib.Drift()

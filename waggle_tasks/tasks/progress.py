@@ -4,11 +4,12 @@ import dataclasses
 
 import numpy as np
 
-from waggle_tasks.protocol import flight, timing
+from waggle_tasks.protocol import agreement as agreement_lib
+from waggle_tasks.protocol import flight
 
 # An episode goes on a little longer than the 2 s of holding, so that they are
 # found however arrival is measured.
-_HOLD_FRAMES = timing.frames(flight.HOLD_S + 0.2)
+_HOLD_S = flight.HOLD_S + 0.2
 # An observer that leaves its place by more than this has moved.
 MOTION_M = 0.01
 
@@ -20,6 +21,7 @@ class Progress:
   Attributes:
     home_m: (3,) where it began.
     target_m: (3,) where the message says, or None when none is sent.
+    agreement: What both sides know: the rate.
     trespassed: Whether it moved before a message was complete.
     arrived: Whether it stood at the target long enough.
     held_frames: Frames since it arrived, while it stayed there.
@@ -27,6 +29,7 @@ class Progress:
 
   home_m: np.ndarray
   target_m: np.ndarray | None
+  agreement: agreement_lib.Agreement = agreement_lib.Agreement()
   trespassed: bool = False
   arrived: bool = False
   held_frames: int = 0
@@ -58,7 +61,7 @@ class Progress:
     self._dwell_frames = self._dwell_frames + 1 if there else 0
     if self.arrived:
       self.held_frames = self.held_frames + 1 if there else 0
-    elif not self.trespassed and self._dwell_frames > timing.frames(
+    elif not self.trespassed and self._dwell_frames > self.agreement.frames(
       flight.ARRIVAL_DWELL_S
     ):
       self.arrived = True
@@ -80,4 +83,5 @@ class Progress:
     if self.target_m is None or not self.arrived:
       return False
     leads_m = np.linalg.norm(self.target_m - self.home_m)
-    return bool(leads_m > MOTION_M) and self.held_frames >= _HOLD_FRAMES
+    hold = self.agreement.frames(_HOLD_S)
+    return bool(leads_m > MOTION_M) and self.held_frames >= hold

@@ -16,10 +16,11 @@ MAX_BYSTANDERS = 4
 # from their places along each axis.
 CIRCLE_M, SPREAD_M = 0.3, 0.04
 # Those places, as the middle of the audience sees them: right, away from the
-# performer, and up. Two beside and two above it, all behind it, so far apart
-# that they cannot meet wherever they are on their circles.
+# performer, and up, from where it hovers. Two beside and two above it,
+# all behind it, so far apart that they cannot meet wherever they are on their
+# circles.
 PLACES_M = (
-  (-0.85, 1.3, 1.2), (0.85, 1.3, 1.2), (-0.8, 1.3, 2.05), (0.8, 1.3, 2.05)
+  (-0.85, 1.3, -0.1), (0.85, 1.3, -0.1), (-0.8, 1.3, 0.75), (0.8, 1.3, 0.75)
 )  # fmt: skip
 # No other vehicle may come further back than this.
 _BACK_M = 1.3 - SPREAD_M - CIRCLE_M - safety.MINIMUM_SPACING_M
