@@ -36,7 +36,7 @@ SEEDS = range(12)
 
 
 def dance(name: str, seed: int = 0) -> schedule.Schedule:
-  return scenario.Scenario(control=name, seed=seed).schedule
+  return scenario.Scenario(control=name, seed=seed).performance.schedule
 
 
 def sampled(
@@ -213,11 +213,12 @@ def test_a_suite_may_hold_decoys() -> None:
   rows = [{'name': name, 'task': name, 'seed': 4} for name in decoys.DECOYS]
   cases = suites.from_rows(rows)
   assert [case.scene.control for case in cases] == [*decoys.DECOYS]
-  assert cases[0].scene.schedule.end_s == dance('circles', 4).end_s
+  assert cases[0].scene.performance.schedule.end_s == dance('circles', 4).end_s
 
 
 def test_the_timeline_shows_a_figure_as_no_symbol() -> None:
-  sent = story.sent_in(scenario.Scenario(control='circles'))
+  scene = scenario.Scenario(control='circles')
+  sent = story.sent(scene.performance, scene.episode_s)
   assert {each.symbol for each in sent} == {Symbol.UNKNOWN}
   assert len(sent) == 7
 

@@ -77,7 +77,7 @@ class Case:
     self.positions_m: dict[str, np.ndarray] = {}
     for name in self.homes:
       if name == 'performer':
-        self.positions_m[name] = danced(self.scene.schedule).copy()
+        self.positions_m[name] = danced(self.scene.performance.schedule).copy()
         continue
       self.fly(name, FORWARD_M)
       self.events[name] = [*read(BITS), deed(START, NULL_S)]

@@ -45,7 +45,7 @@ def hidden(
   scene: scenario.Scenario, first: int, count: int, kind: str
 ) -> spoilers.Loss:
   """A loss over some motions, from one rest into another."""
-  slots = scene.schedule.slots
+  slots = scene.performance.schedule.slots
   begin_s = slots[first].begin_s - 0.3
   end_s = slots[first + count - 1].end_s + 0.3
   return spoilers.Loss(kind, begin_s, end_s - begin_s)
@@ -66,7 +66,7 @@ def test_with_a_part_hidden_no_message_is_read(
   scene, seen = flown(control)
   count = HIDDEN[control]
   kinds = [*spoilers.LOSSES]
-  for first in range(1, len(scene.schedule.slots) - count, 2):
+  for first in range(1, len(scene.performance.schedule.slots) - count, 2):
     # Each kind in its turn: all of them everywhere are many minutes.
     loss = hidden(scene, first, count, kinds[first % len(kinds)])
     assert read(loss(seen.play()), name, scene) == [], loss
@@ -88,7 +88,7 @@ def test_halves_of_two_dances_are_no_message(
   name: str, gap_s: float, flown: Flown
 ) -> None:
   scene, seen = flown('none')
-  middle_s = scene.schedule.slots[4].begin_s - 1.0
+  middle_s = scene.performance.schedule.slots[4].begin_s - 1.0
 
   def halves() -> Iterator[tuple[np.ndarray, float]]:
     for image, time_s in seen.play():
@@ -103,7 +103,7 @@ def test_a_loss_that_can_hide_no_gesture_costs_nothing(
 ) -> None:
   """In a rest; `view_bank` goes on where it was."""
   scene, seen = flown('none')
-  begin_s = scene.schedule.slots[3].end_s + 1.2
+  begin_s = scene.performance.schedule.slots[3].end_s + 1.2
   loss = spoilers.Loss(kind, begin_s, 0.8 * scene.agreement.clock.blind_s)
   assert read(loss(seen.play()), 'view_bank', scene) == [scene.payload]
 

@@ -153,8 +153,7 @@ def test_two_vehicles_that_touch_are_named(
       performer=performer.Performer(),
       observers=tuple(observer.Observer(f'observer_{i}') for i in (1, 2)),
       poses=poses,
-      dance=scene.schedule,
-      message=scene.message,
+      performance=scene.performance,
       duration_s=10.0,
       minimum_spacing_m=0.0,
     )

@@ -260,8 +260,8 @@ def test_another_codebook_and_timing_make_another_dance() -> None:
     pauses=timing.Timing(1.0, 0.0, 1.0, 0.0),
     payload='101010',
   )
-  assert scene.schedule.end_s == pytest.approx(1 + 8 * 4 + 7)
-  symbols = [slot.gesture.symbol for slot in scene.schedule.slots]
+  assert scene.performance.schedule.end_s == pytest.approx(1 + 8 * 4 + 7)
+  symbols = [slot.gesture.symbol for slot in scene.performance.schedule.slots]
   assert ' '.join(symbols) == 'START 1 0 1 0 1 0 END'
 
 

@@ -261,4 +261,4 @@ def test_a_scenario_can_be_copied_and_pickled(name: str) -> None:
   for copied in (copy.deepcopy(scene), pickle.loads(pickle.dumps(scene))):
     assert isinstance(copied, scenario.Scenario)
     assert copied == scene
-    assert copied.schedule.end_s == scene.schedule.end_s
+    assert copied.performance.schedule.end_s == scene.performance.schedule.end_s

@@ -7,8 +7,7 @@ from waggle_tasks import runtime, scenarios
 from waggle_tasks import scenario as scenario_lib
 from waggle_tasks.arenas import flight_room
 from waggle_tasks.entities import observer, performer
-from waggle_tasks.protocol import decoys
-from waggle_tasks.tasks import broadcast, controls, copies, furnish
+from waggle_tasks.tasks import broadcast, copies, furnish
 from waggle_tasks.tasks import parts as parts_lib
 
 runtime.require_versions(mujoco.__version__)
@@ -26,36 +25,26 @@ def build(scenario: Scenario) -> broadcast.Broadcast:
   agreement = scenario.agreement
   observers = tuple(
     observer.Observer(
-      f'observer_{number + 1}',
+      f'observer_{number}',
       scenario.camera,
       scenario.eye_offset_m,
-      scenario.sensor,
+      sensor,
       agreement,
     )
-    for number in range(scenario.observers)
+    for number, sensor in enumerate(scenario.sensors, 1)
   )
   parts = parts_lib.Parts(
     room=flight_room.FlightRoom(scenario.appearance, agreement=agreement),
     performer=performer.Performer(),
     observers=observers,
     poses=scenario.poses(),
-    dance=scenario.schedule,
-    message=scenario.message,
+    performance=scenario.performance,
     duration_s=scenario.episode_s,
     agreement=agreement,
     jitter_m=scenario.jitter_m,
     drift=scenario.drift,
   )
   furnish.furnish(parts.room, scenario.surroundings, parts.poses, agreement)
-  match scenario.control:
-    case 'no_send':
-      return controls.NoSend(parts)
-    case 'black_input':
-      return controls.BlackInput(parts, scenario.black_observer)
-    case 'interrupted':
-      return controls.Interrupted(parts, scenario.stop_s)
-  if scenario.control in decoys.DECOYS:
-    return controls.Decoy(parts)
   return broadcast.Broadcast(parts)
 
 

@@ -12,15 +12,15 @@ from waggle_tasks.arenas import bounds, layouts
 from waggle_tasks.entities import optics
 from waggle_tasks.protocol import agreement as agreement_lib
 from waggle_tasks.protocol import camera as camera_lib
-from waggle_tasks.protocol import checks, clock, decoys, gestures, timing
+from waggle_tasks.protocol import checks, clock, controls, gestures, timing
 from waggle_tasks.protocol import limits as limits_lib
 from waggle_tasks.protocol import payload as payload_lib
-from waggle_tasks.protocol import schedule as schedule_lib
+from waggle_tasks.protocol import performance as performance_lib
 from waggle_tasks.tasks import drift as drift_lib
 from waggle_tasks.tasks import safety
 from waggle_tasks.tasks import surroundings as surroundings_lib
 
-CONTROLS = ('none', 'no_send', 'black_input', 'interrupted', *decoys.DECOYS)
+CONTROLS = controls.CONTROLS
 LAYOUTS = ('arc', 'line')
 # After the last gesture: the 3 s null, the flight, the hold, and time to spare.
 AFTERMATH_S = 12.0
@@ -180,24 +180,25 @@ class Scenario:
     )
 
   @property
-  def schedule(self) -> schedule_lib.Schedule:
-    """The dance: the whole message, or what is flown in place of one."""
-    return decoys.dance(
-      self.control, self.message, self.seed, self.codebook, self.pauses
-    )
+  def performance(self) -> performance_lib.Performance:
+    """What the performer flies: the message, or what comes in place of one."""
+    return controls.perform(
+      self.control, self.message, self.seed, self.codebook, self.pauses,
+      self.stop_s,
+    )  # fmt: skip
 
   @property
-  def stops_s(self) -> float:
-    """When the dance ends by itself, or is stopped; 0 without one."""
-    ends_s = {'no_send': 0.0, 'interrupted': self.stop_s}
-    return min(self.schedule.end_s, ends_s.get(self.control, math.inf))
-
-  @property
-  def sends_message(self) -> bool:
-    """Whether a whole message is danced."""
-    if self.control in ('no_send', *decoys.DECOYS):
-      return False
-    return self.stops_s >= self.schedule.end_s
+  def sensors(self) -> tuple[sensor_lib.Sensor, ...]:
+    """What spoils the images of each observer."""
+    out = [self.sensor] * self.observers
+    if self.control == 'black_input':
+      out[self.black_observer - 1] = dataclasses.replace(
+        self.sensor,
+        blackout_s=0.0,
+        blackout_length_s=sensor_lib.ALWAYS_S,
+        blackout_share=1.0,
+      )
+    return tuple(out)
 
   @property
   def episode_s(self) -> float:
@@ -208,7 +209,7 @@ class Scenario:
       return NO_SEND_S
     if self.control == 'interrupted':
       return INTERRUPTED_S
-    return self.schedule.end_s + AFTERMATH_S
+    return self.performance.schedule.end_s + AFTERMATH_S
 
   def poses(self) -> dict[str, layouts.Pose]:
     """Where each vehicle starts, before jitter, by its name.

@@ -72,7 +72,7 @@ def fly(scene: scenario.Scenario) -> Flight:
   pilots = [navigator.Navigator(scene.agreement) for _ in task.observers]
   command = navigator.Command(scene.message, 'what was sent')
   release = scene.agreement.frames(
-    scene.schedule.end_s + config.Config().stillness.hold_s
+    scene.performance.end_s + config.Config().stillness.hold_s
   )
   with contextlib.closing(environment):
     timestep = environment.reset()

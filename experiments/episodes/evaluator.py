@@ -24,7 +24,7 @@ from waggle_tasks.tasks import progress, safety
 
 def expected_bits(scene: scenario.Scenario, number: int) -> str | None:
   """What observer `number`, from 1, should read; None for nothing."""
-  if not scene.sends_message:
+  if scene.performance.message is None:
     return None
   if scene.control == 'black_input' and number == scene.black_observer:
     return None

@@ -35,7 +35,7 @@ def of(scene: scenario.Scenario, receiver_name: str, source_digest: str) -> str:
     'versions': provenance.versions(),
     'outside': source_files.hashes(outside.paths(receiver_name, [scene])),
     'poses': scene.poses(),
-    'dance': scene.schedule,
+    'performance': scene.performance,
     'episode_s': scene.episode_s,
     'numbers': numbers,
   }

@@ -82,7 +82,8 @@ def _dance(scene: scenario.Scenario, rollout: rollout_lib.Rollout) -> list[str]:
   """Whether the performer was beside its path."""
   flown_m = rollout.steady_m('performer')
   yaw_rad = scene.poses()['performer'].yaw_rad
-  dance, until_s = scene.schedule, scene.stops_s
+  performance = scene.performance
+  dance, until_s = performance.schedule, performance.end_s
   times_s = rollout.times_s[rollout.times_s <= until_s]
   wanted_m = np.array(
     [

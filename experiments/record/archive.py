@@ -3,7 +3,6 @@
 from collections.abc import Callable, Mapping
 import dataclasses
 import json
-import math
 import pathlib
 from typing import Any
 import zipfile
@@ -18,7 +17,7 @@ from waggle_tasks.protocol import agreement as agreement_lib
 from waggle_tasks.protocol import (
   camera,
   clock,
-  decoys,
+  controls,
   frame,
   gestures,
   payload,
@@ -77,12 +76,11 @@ class Run:
       scene['payload'], payload.Units(**scene['units'])
     )
     known = self.agreement
-    dance = decoys.dance(
-      scene['control'], bits, scene['seed'], known.codebook, known.pauses
-    )
-    stops_s = {'no_send': 0.0, 'interrupted': scene['stop_s']}
-    stop_s = stops_s.get(scene['control'], math.inf)
-    return story.sent(dance, min(stop_s, self.end_s))
+    performance = controls.perform(
+      scene['control'], bits, scene['seed'], known.codebook, known.pauses,
+      scene['stop_s'],
+    )  # fmt: skip
+    return story.sent(performance, self.end_s)
 
   @property
   def end_s(self) -> float:

@@ -82,7 +82,7 @@ def check(scenes: Sequence[scenario.Scenario], receiver_name: str) -> str:
   Raises:
     PauseError: naming the pause, what is needed, and both numbers.
   """
-  sent = [scene for scene in scenes if scene.sends_message]
+  sent = [scene for scene in scenes if scene.performance.message is not None]
   flaws = [why for scene in sent if (why := flaw(scene, receiver_name))]
   if not flaws:
     return ''

@@ -3,11 +3,10 @@
 from collections.abc import Iterable
 import dataclasses
 
-from waggle_tasks import scenario
 from waggle_tasks.agents import observer_agent, receiver
 from waggle_tasks.experiments.record import episode
 from waggle_tasks.protocol import frame
-from waggle_tasks.protocol import schedule as schedule_lib
+from waggle_tasks.protocol import performance as performance_lib
 from waggle_tasks.protocol.symbols import BITS, Symbol
 from waggle_tasks.tasks import safety
 
@@ -92,16 +91,19 @@ class Sent:
   end_s: float
 
 
-def sent(schedule: schedule_lib.Schedule, stop_s: float) -> tuple[Sent, ...]:
-  """What the performer flies until it is stopped.
+def sent(
+  performance: performance_lib.Performance, episode_s: float
+) -> tuple[Sent, ...]:
+  """What a performer flies, until it or the episode ends.
 
   Args:
-    schedule: The whole dance.
-    stop_s: When it, or the episode, ends; zero when it never begins.
+    performance: What it would fly.
+    episode_s: When the episode ends.
   """
+  stop_s = min(performance.end_s, episode_s)
   return tuple(
     Sent(slot.gesture.symbol, slot.begin_s, min(slot.end_s, stop_s))
-    for slot in schedule.slots
+    for slot in performance.schedule.slots
     if slot.begin_s < stop_s
   )
 
@@ -112,8 +114,3 @@ def symbol_at(gestures: Iterable[Sent], time_s: float) -> Symbol:
     if each.begin_s <= time_s < each.end_s:
       return each.symbol
   return Symbol.NULL
-
-
-def sent_in(scene: scenario.Scenario) -> tuple[Sent, ...]:
-  """What the performer flies in a scenario."""
-  return sent(scene.schedule, min(scene.stops_s, scene.episode_s))

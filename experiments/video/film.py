@@ -118,7 +118,7 @@ def composite(
   scene: scenario.Scenario, names: tuple[str, ...], scale: float = 1.0
 ) -> page.Composite:
   """A page of a scenario's composite for some of its observers."""
-  sent = story.sent_in(scene)
+  sent = story.sent(scene.performance, scene.episode_s)
   return page.Composite(
     names, title(scene), sent, scene.episode_s, scale, changes.of(scene, _TOLD)
   )

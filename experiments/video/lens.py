@@ -31,7 +31,7 @@ class Lens:
       scene: What will be flown.
       shared: Which of `layout.SHARED` moments have images of.
     """
-    self._sent = story.sent_in(scene)
+    self._sent = story.sent(scene.performance, scene.episode_s)
     self._frame_s = scene.agreement.frame_s
     self._shared = {name: layout.SHARED[name] for name in shared}
     self._shadows = scene.appearance.shadows

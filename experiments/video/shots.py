@@ -40,7 +40,7 @@ class Shots:
     self._at = scene.agreement.frames(_TIME_S)
     self._wanted = {
       frame
-      for gesture in firsts(story.sent_in(scene))
+      for gesture in firsts(story.sent(scene.performance, scene.episode_s))
       for frame in exposures(gesture, scene.agreement)
     }
     self.composite: np.ndarray | None = None
@@ -90,7 +90,8 @@ def take(receiver_name: str) -> dict[str, np.ndarray]:  # (H, W, 3) uint8 each
   shots = Shots(scene)
   receivers.make(receiver_name, scene.agreement)
   flown = rollout_lib.run(scene, receiver_name, [shots])
-  sent, trace = story.sent_in(scene), [*flown.traces.values()][_OBSERVER]
+  sent = story.sent(scene.performance, scene.episode_s)
+  trace = [*flown.traces.values()][_OBSERVER]
   return {
     'composite.png': np.asarray(shots.composite),
     'gestures.png': gestures(

@@ -47,7 +47,8 @@ class Dance:
 def fly(path: pathlib.Path, scene: scenario.Scenario) -> Dance:
   """Captures a broadcast to its very end; the observer stays where it is."""
   environment = registry.environment(scene)
-  end_s = scene.schedule.end_s + 6.0  # The final null, and what is behind it.
+  # The final null, and what is behind it.
+  end_s = scene.performance.end_s + 6.0
   try:
     timestep = environment.reset()
     with capture.Writer(path) as writer:

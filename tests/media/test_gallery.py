@@ -51,7 +51,8 @@ def test_a_picture_that_cannot_be_written_is_an_error(
 
 
 def test_each_gesture_shows_the_performer_all_along_its_track() -> None:
-  sent = shots.firsts(story.sent_in(scenario.Scenario()))
+  scene = scenario.Scenario()
+  sent = shots.firsts(story.sent(scene.performance, scene.episode_s))
   assert [str(each.symbol) for each in sent] == ['START', '0', '1', 'END']
   images, times_s, centres_px = {}, [], []
   for gesture in sent:

@@ -130,7 +130,7 @@ def test_symbols_and_track_appear_as_they_are_read(recorded: object) -> None:
   foot = plan.foot(eye).slices
   assert all(colour_share(p[foot], palette.BLUE) < 0.001 for p in before)
   assert all(colour_share(p[foot], palette.BLUE) > 0.03 for p in after)
-  sent = story.sent_in(recorded.scene)[0]
+  sent = story.sent(recorded.scene.performance, recorded.scene.episode_s)[0]
   dancing = [p for t, p in pictures if sent.begin_s + 1 < t < sent.end_s]
   trails = [colour_share(p[eye.slices], palette.YELLOW) for p in dancing]
   assert max(trails) > 0.0004

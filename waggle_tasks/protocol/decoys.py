@@ -12,7 +12,6 @@ import numpy as np
 
 from waggle_tasks.protocol import (
   flight,
-  frame,
   gestures,
   minimum_jerk,
   payload,
@@ -288,16 +287,3 @@ def perform(
     return schedule.lay_out(_FIGURE_MAKERS[name](rng), pauses)
   symbols = tuple(_FRAME_MAKERS[name](rng, num_bits))
   return schedule.broadcast(symbols, codebook, pauses)
-
-
-def dance(
-  control: str,
-  message: payload.Payload,
-  seed: int,
-  codebook: gestures.Codebook,
-  pauses: timing.Timing,
-) -> schedule.Schedule:
-  """What a scenario's performer flies: its message, or a decoy of `seed`."""
-  if control in DECOYS:
-    return perform(control, seed, codebook, pauses, len(message.bits))
-  return schedule.broadcast(frame.motions(message), codebook, pauses)

@@ -49,8 +49,9 @@ class Broadcast(copies.Uncopied, composer.Task):
     """
     self._parts = parts
     self._observers = {o.mjcf_model.model: o for o in parts.observers}
-    name = parts.performer.mjcf_model.model
-    self._vehicles = {name: parts.performer, **self._observers}
+    self._dancers = parts.dancers
+    dancing = {name: each.vehicle for name, each in self._dancers.items()}
+    self._vehicles = {**dancing, **self._observers}
     self._joints, self._controllers = [], {}
     for name, vehicle in self._vehicles.items():
       pose = parts.poses[name]
@@ -145,9 +146,12 @@ class Broadcast(copies.Uncopied, composer.Task):
     )
     self._homes = dict(zip(self._vehicles, poses, strict=True))
     drift = self._parts.drift
-    self._wanders = {'performer': drift.performer(random_state)}
-    for name in self._observers:
-      self._wanders[name] = drift.observer(random_state)
+    self._wanders = {
+      name: (drift.performer if name in self._dancers else drift.observer)(
+        random_state
+      )
+      for name in self._vehicles
+    }
     for name, pose in self._homes.items():
       half_rad = pose.yaw_rad / 2
       self._vehicles[name].set_pose(
@@ -156,14 +160,16 @@ class Broadcast(copies.Uncopied, composer.Task):
         np.array([math.cos(half_rad), 0.0, 0.0, math.sin(half_rad)]),
       )
     self._clock = clock_lib.Clock(physics, self.agreement)
-    self._begin_dance()
+    for each in self._dancers.values():
+      each.vehicle.perform(each.performance.schedule)
+      each.vehicle.stop(each.performance.stop_s)
     self._begin_flights()
 
   def _begin_flights(self) -> None:
     """Lets every observer wait at its place."""
-    displacement_m = None
-    if self.sends_message:
-      displacement_m = self._parts.message.displacement_m(self.agreement.units)
+    displacement_m, message = None, self._parts.performance.message
+    if message is not None:
+      displacement_m = message.displacement_m(self.agreement.units)
     self._flights = flights.Flights(
       {n: np.array(self._homes[n].position_m) for n in self._observers},
       displacement_m,
@@ -173,14 +179,10 @@ class Broadcast(copies.Uncopied, composer.Task):
     self._rewards = [0.0] * len(self._observers)
     self._contacts: tuple[tuple[str, str], ...] = ()
 
-  def _begin_dance(self) -> None:
-    """Tells the performer what to fly in this episode."""
-    self.performer.perform(self._parts.dance)
-
   @property
   def sends_message(self) -> bool:
     """Whether this episode's dance is a whole message."""
-    return self.performer.is_whole
+    return self._parts.performance.message is not None
 
   def before_step(
     self,
@@ -199,11 +201,12 @@ class Broadcast(copies.Uncopied, composer.Task):
     if self._clock.was_set(physics):
       self._replay(physics)
     time_s, middle_s = self._clock.time_s, self._clock.middle_s
-    home = self._homes['performer']
-    motion = self.performer.motion(
-      np.array(home.position_m), home.yaw_rad, middle_s
-    )
-    self._command(physics, 'performer', motion)
+    for name, dancer in self._dancers.items():
+      home = self._homes[name]
+      motion = dancer.vehicle.motion(
+        np.array(home.position_m), home.yaw_rad, middle_s
+      )
+      self._command(physics, name, motion)
     wanted = actions.read(action, [*self._observers])
     followed = self._flights.follow(
       wanted, self.positions_m(physics), self.drifts_m(), time_s

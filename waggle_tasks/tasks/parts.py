@@ -6,9 +6,22 @@ import dataclasses
 from waggle_tasks.arenas import flight_room, layouts
 from waggle_tasks.entities import observer, performer
 from waggle_tasks.protocol import agreement as agreement_lib
-from waggle_tasks.protocol import payload, schedule
+from waggle_tasks.protocol import performance as performance_lib
 from waggle_tasks.tasks import drift as drift_lib
 from waggle_tasks.tasks import safety
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class Dancer:
+  """A vehicle that dances.
+
+  Attributes:
+    vehicle: The vehicle.
+    performance: What it flies.
+  """
+
+  vehicle: performer.Performer
+  performance: performance_lib.Performance
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -17,26 +30,34 @@ class Parts:
 
   Attributes:
     room: The arena.
-    performer: The vehicle that dances.
+    performer: The vehicle that dances for the observers.
     observers: The vehicles that watch.
     poses: Where each vehicle starts, by the name of its model.
-    dance: What the performer flies.
-    message: What the dance says.
+    performance: What the performer flies, and what that says.
     duration_s: How long an episode lasts at most.
     agreement: What both sides know.
     jitter_m: Bound of each vehicle's initial x and y offset.
     minimum_spacing_m: Smallest distance allowed between two vehicles.
     drift: How far vehicles wander from their references.
+    others: Vehicles that dance beside the performer.
   """
 
   room: flight_room.FlightRoom
   performer: performer.Performer
   observers: tuple[observer.Observer, ...]
   poses: Mapping[str, layouts.Pose]
-  dance: schedule.Schedule
-  message: payload.Payload
+  performance: performance_lib.Performance
   duration_s: float
   agreement: agreement_lib.Agreement = agreement_lib.Agreement()
   jitter_m: float = 0.0
   minimum_spacing_m: float = safety.MINIMUM_SPACING_M
   drift: drift_lib.Drift = drift_lib.Drift()
+  others: tuple[Dancer, ...] = ()
+
+  @property
+  def dancers(self) -> dict[str, Dancer]:
+    """All that dance, the performer first, by the name of their models."""
+    first = Dancer(self.performer, self.performance)
+    return {
+      each.vehicle.mjcf_model.model: each for each in (first, *self.others)
+    }
