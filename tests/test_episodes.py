@@ -4,8 +4,6 @@ The default run flies a short dance where it can; `-m slow` flies the paper's
 own for every payload, number, layout and case of its tables.
 """
 
-import math
-
 import numpy as np
 import pytest
 
@@ -13,7 +11,6 @@ from waggle_tasks import registry, scenario
 from waggle_tasks.experiments.episodes import evaluator
 from waggle_tasks.experiments.episodes import rollout as rollout_lib
 from waggle_tasks.experiments.record import verdicts
-from waggle_tasks.protocol import payload
 
 PAYLOADS = ('000010', '000110', '001010', '100010')
 Played = tuple[scenario.Scenario, rollout_lib.Rollout, verdicts.Verdict]
@@ -64,12 +61,6 @@ def test_a_short_dance_is_read_and_flown(
       **short,
     )
   )
-
-
-def test_a_longer_payload_is_read_and_flown(short: dict[str, object]) -> None:
-  units = payload.Units(math.tau / 32, 0.05, heading_bits=5, distance_bits=4)
-  changes = {'payload': '0000101011', 'units': units, 'observers': 1}
-  check_all_flew(play('broadcast', **changes, **short))
 
 
 @pytest.mark.slow

@@ -20,8 +20,12 @@ class Environment(copies.Uncopied, composer.Environment):
   """A composer environment that says why it cannot be copied."""
 
 
-def build(scenario: Scenario) -> broadcast.Broadcast:
-  """Builds the task of a scenario from new entities."""
+def parts(scenario: Scenario) -> parts_lib.Parts:
+  """Builds the parts of a scenario's task, to be changed or added to.
+
+  Those of a task with a second dancer are, for example,
+  `dataclasses.replace(made, others=(parts.Dancer(...),), poses=...)`.
+  """
   agreement = scenario.agreement
   observers = tuple(
     observer.Observer(
@@ -33,7 +37,7 @@ def build(scenario: Scenario) -> broadcast.Broadcast:
     )
     for number, sensor in enumerate(scenario.sensors, 1)
   )
-  parts = parts_lib.Parts(
+  made = parts_lib.Parts(
     room=flight_room.FlightRoom(scenario.appearance, agreement=agreement),
     performer=performer.Performer(),
     observers=observers,
@@ -44,15 +48,30 @@ def build(scenario: Scenario) -> broadcast.Broadcast:
     jitter_m=scenario.jitter_m,
     drift=scenario.drift,
   )
-  furnish.furnish(parts.room, scenario.surroundings, parts.poses, agreement)
-  return broadcast.Broadcast(parts)
+  furnish.furnish(made.room, scenario.surroundings, made.poses, agreement)
+  return made
+
+
+def build(scenario: Scenario) -> broadcast.Broadcast:
+  """Builds the task of a scenario from new entities."""
+  return broadcast.Broadcast(parts(scenario))
 
 
 def environment(scenario: Scenario) -> Environment:
   """The environment of a scenario; close it in the thread that made it."""
+  return of_task(build(scenario), scenario.seed)
+
+
+def of_task(task: composer.Task, seed: int = 0) -> Environment:
+  """The environment of a task of one's own, as those of scenarios are.
+
+  Args:
+    task: The task.
+    seed: Of the environment's random state.
+  """
   return Environment(
-    build(scenario),
-    random_state=scenario.seed,
+    task,
+    random_state=seed,
     strip_singleton_obs_buffer_dim=True,
     recompile_mjcf_every_episode=False,
   )

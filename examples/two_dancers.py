@@ -1,0 +1,29 @@
+"""Two dance at once; who watches follows the one in its picture's middle."""
+
+import dataclasses
+
+import loop
+
+from waggle_tasks import registry, scenarios
+from waggle_tasks.entities import performer
+from waggle_tasks.tasks import broadcast, parts
+
+
+def main() -> None:
+  """The second one dances another message, to the side and behind."""
+  scene = scenarios.find('broadcast', observers=1, **loop.FAST)
+  other = dataclasses.replace(scene, payload='101001')
+  made = registry.parts(scene)
+  beside = parts.Dancer(performer.Performer('dancer'), other.performance)
+  middle = made.poses['performer']
+  place = dataclasses.replace(middle, position_m=(0.8, 0.5, 1.3))
+  task = broadcast.Broadcast(
+    dataclasses.replace(
+      made, others=(beside,), poses={**made.poses, 'dancer': place}
+    )
+  )
+  loop.fly(registry.of_task(task))
+
+
+if __name__ == '__main__':
+  main()

@@ -1,0 +1,40 @@
+"""The examples: what is added from outside, in a few lines each."""
+
+import importlib
+import pathlib
+
+import pytest
+
+FOLDER = pathlib.Path(__file__).parents[1] / 'examples'
+READ = {
+  'own_layout': ['000010'] * 3,
+  'small_fast_camera': ['000010'],
+  'twelve_bits': ['000100010100'],
+  'two_dancers': ['000010'],
+  'wind': ['000010'],
+}
+
+
+def test_every_example_is_here_and_short() -> None:
+  lengths = {
+    path.stem: len(path.read_text(encoding='utf-8').splitlines())
+    for path in FOLDER.glob('*.py')
+  }
+  assert lengths.pop('loop') < 40
+  assert lengths.keys() == READ.keys()
+  assert max(lengths.values()) < 40
+
+
+@pytest.mark.parametrize('name', READ)
+def test_an_example_reads_what_is_danced(
+  name: str,
+  monkeypatch: pytest.MonkeyPatch,
+  capsys: pytest.CaptureFixture[str],
+) -> None:
+  monkeypatch.syspath_prepend(str(FOLDER))
+  importlib.import_module(name).main()
+  lines = capsys.readouterr().out.splitlines()
+  assert lines[: len(READ[name])] == [
+    f"observer_{number} read ['{bits}'], reward 1"
+    for number, bits in enumerate(READ[name], 1)
+  ]
