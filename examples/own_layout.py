@@ -30,10 +30,8 @@ class Steps:
 
 def main() -> None:
   """Flies a message before them."""
-  layout = Steps()
-  loop.fly(
-    waggle_tasks.load('broadcast', observers=3, layout=layout, **loop.FAST)
-  )
+  changes = {'observers': 3, 'layout': Steps(), **loop.FAST}
+  loop.fly(waggle_tasks.load('broadcast', **changes))
 
 
 if __name__ == '__main__':
