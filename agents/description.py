@@ -50,6 +50,7 @@ class Description:
   Attributes:
     null: What it takes for a null.
     max_gap_s: Longest time between two images of one track.
+    reach_px: How far a target may go from one image to the next.
     place: How far the target is from where it rests.
     speed: How fast it is.
     support: How much of the picture a track stands on.
@@ -60,6 +61,7 @@ class Description:
 
   null: Null | None = None
   max_gap_s: float | None = None
+  reach_px: float | None = None
   place: Measure = Measure('position', 'px from anchor')
   speed: Measure = Measure('speed', 'px/s, log')
   support: Measure = Measure('support', '')
@@ -76,7 +78,9 @@ def of(config: config_lib.Config, width_px: float | None) -> Description:
     width_px: How wide the target is, where that is known.
   """
   tracking, motion, rest = config.tracking, config.motion, config.stillness
+  reach_px = None
   if isinstance(tracking, config_lib.Tracking):
+    reach_px = tracking.window_px
     support = Measure(
       'support', 'features', (tracking.min_support,),
       f'at least {tracking.min_support}',
@@ -92,6 +96,7 @@ def of(config: config_lib.Config, width_px: float | None) -> Description:
   return Description(
     Null(rest.hold_s, end_s, config.framing.separators),
     tracking.max_gap_s,
+    reach_px,
     place,
     speed,
     support,

@@ -30,6 +30,7 @@ from waggle_tasks.experiments.record import (
   folders,
   nulls,
   provenance,
+  reach,
   source_files,
   verdicts,
   writer,
@@ -53,6 +54,8 @@ def main(argv: Sequence[str]) -> int:
   scene = scenario_flags.read()
   receivers.make(_RECEIVER.value, scene.agreement)
   nulls.check([scene], _RECEIVER.value)
+  if note := reach.note([scene], _RECEIVER.value):
+    print(note, file=sys.stderr)
   # Imported here: help needs no simulator.
   from waggle_tasks.experiments.episodes import evaluator, outside
 

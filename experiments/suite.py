@@ -21,7 +21,7 @@ from waggle_tasks.agents import receivers
 from waggle_tasks.experiments import launch
 from waggle_tasks.experiments.flags import receiver_flag, workers_flag
 from waggle_tasks.experiments.pages import run_page, suite_page
-from waggle_tasks.experiments.record import nulls, provenance
+from waggle_tasks.experiments.record import nulls, provenance, reach
 from waggle_tasks.experiments.results import suite_tables
 from waggle_tasks.protocol import checks
 
@@ -55,8 +55,10 @@ def main(argv: Sequence[str]) -> int:
     raise flags.Error(f'takes only flags, --name=value: got {argv[1]!r}.')
   cases = _cases()
   receivers.make(_RECEIVER.value)
-  if note := nulls.check([c.scene for c in cases], _RECEIVER.value):
-    print(note, file=sys.stderr)
+  scenes = [case.scene for case in cases]
+  for look in (nulls.check, reach.note):
+    if note := look(scenes, _RECEIVER.value):
+      print(note, file=sys.stderr)
   # Imported here: to compare results, no simulator is needed.
   from waggle_tasks.experiments.studies import suite_runner
 

@@ -24,7 +24,7 @@ from waggle_tasks.experiments.flags import (
   workers_flag,
 )
 from waggle_tasks.experiments.pages import sweep_output
-from waggle_tasks.experiments.record import folders, nulls, provenance
+from waggle_tasks.experiments.record import folders, nulls, provenance, reach
 from waggle_tasks.experiments.results import envelope, figures, sweep_tables
 from waggle_tasks.experiments.studies import sweep_cases, sweep_results
 from waggle_tasks.protocol import checks
@@ -69,8 +69,10 @@ def main(argv: Sequence[str]) -> int:
   checks.integer(
     'replays', _REPLAYS.value, 0, _MOST_REPLAYS, sweep_cases.SweepError
   )
-  if note := nulls.check([c.scene for c in cases], _RECEIVER.value):
-    print(note, file=sys.stderr)
+  scenes = [case.scene for case in cases]
+  for look in (nulls.check, reach.note):
+    if note := look(scenes, _RECEIVER.value):
+      print(note, file=sys.stderr)
   # Imported here: to show results, no simulator is needed.
   from waggle_tasks.experiments.studies import cluster, pool, sweep_runner
 

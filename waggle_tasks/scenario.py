@@ -76,7 +76,7 @@ class Scenario:
     drift: How far vehicles wander from where they should be.
     sensor: What spoils the observers' images.
     rate_hz: How many images and references there are in a second: 250 over a
-      whole number, 5 to 125.
+      whole number, 10 to 125.
     hover_height_m: Where everybody hovers and where a message leads to, 0.5 to
       5.5 m above the floor.
     camera: One of `optics.CAMERAS`; both give the same picture.

@@ -13,7 +13,7 @@ MIN_PHOTONS = 10.0
 _LIMITS = {
   'noise_sigma': (0.0, 128.0),
   'photons': (0.0, 1e6),
-  'exposure_s': (0.0, 0.2),
+  'exposure_s': (0.0, 0.1),
   'step_gain': (0.1, 10.0),
   'step_s': (0.0, ALWAYS_S),
   'flicker_share': (0.0, 1.0),

@@ -12,7 +12,7 @@ import numpy as np
 from waggle_tasks import scenario
 from waggle_tasks.agents import receiver
 from waggle_tasks.experiments.episodes import rollout as rollout_lib
-from waggle_tasks.experiments.record import nulls
+from waggle_tasks.experiments.record import nulls, reach
 from waggle_tasks.experiments.record import traces as traces_lib
 from waggle_tasks.protocol import agreement as agreement_lib
 from waggle_tasks.protocol import camera, schedule
@@ -59,14 +59,17 @@ def find(
     name: Who did not read.
 
   Returns:
-    Failures: a dancer beside its path, pauses that are too short, a view from
-    behind, and a target that was not found, lost, or not what was followed.
+    Failures: a dancer beside its path, pauses that are too short, images that
+    come too seldom, a view from behind, and a target that was not found, lost,
+    or not what was followed.
   """
   out = _dance(scene, rollout)
   if rollout.receiver and (
     why := nulls.flaw(scene, rollout.receiver, _SPARE_S)
   ):
     out.append(f'pause: {why}')
+  if rollout.receiver and (why := reach.flaw(scene, rollout.receiver, name)):
+    out.append(f'rate: {why}')
   out += _view(scene, name)
   trace = rollout.traces.get(name)
   if trace is not None and len(trace.times_s) and name in rollout.targets_px:

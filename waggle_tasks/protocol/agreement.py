@@ -11,7 +11,7 @@ from waggle_tasks.protocol import clock as clock_lib
 # Vehicles are flown, and physics is stepped, at this rate. A frame is a whole
 # number of such steps: two of them at least, and few enough to fly well.
 STEPS_HZ = 250
-_STEPS = (2, 50)
+_STEPS = (2, 25)
 # How a rate may be rounded.
 _SAME = 1e-6
 # Between these everything that flies has room, but for tall gestures.
@@ -35,7 +35,7 @@ class Agreement:
     units: The payload's fields, and what a count of each means.
     camera: What observers see with.
     rate_hz: How many images and references there are in a second: 250 over a
-      whole number, 5 to 125; 25 in the paper (section 'Evaluation protocol').
+      whole number, 10 to 125; 25 in the paper (section 'Evaluation protocol').
     hover_height_m: Where everybody hovers and where a message leads to, 0.5 to
       5.5 m above the floor; 1.3 m in the paper (sections 'Scene, sensors, and
       information boundaries' and 'Per-observer navigation').
