@@ -17,17 +17,15 @@ is deterministic and needs no multisample buffer.
 
 from collections.abc import Iterator
 import contextlib
-import dataclasses
 import functools
-from typing import Any
 
 import cv2
 from dm_control import mjcf
 import mujoco
 import numpy as np
 
+from waggle_tasks.entities import canvas as canvas_lib
 from waggle_tasks.entities import forks, framebuffer, rigid, windows
-from waggle_tasks.protocol import camera as camera_lib
 
 _SAMPLES = 2  # Samples per pixel along each axis.
 _HIDDEN_GROUP = 5  # Not drawn by default (MuJoCo, mjvOption.geomgroup).
@@ -42,46 +40,6 @@ _LOOKS = (
   'light_dir', 'light_castshadow', 'mat_reflectance',
 )  # fmt: skip
 _HEADLIGHT = ('ambient', 'diffuse', 'specular')
-
-
-def _unseen() -> Any:  # noqa: ANN401
-  """What a canvas holds before it shows anything."""
-  return dataclasses.field(default_factory=lambda: np.empty(0))
-
-
-@dataclasses.dataclass(eq=False)
-class _Canvas:
-  """One camera's picture and what it shows.
-
-  Attributes:
-    pixels: (H, W, 3) uint8, the picture.
-    room: (H, W, 3) uint8, the picture without what can move.
-    poses: (M, 12) position and rotation of each part, as shown.
-    places: (G, 3) and (G, 9) those of the geoms that can move.
-    eye: (12,) that of the camera.
-    boxes: (M, 4) windows that hold the parts.
-    shown: The windows of the picture, each with the parts that it holds.
-    looks: Version of the model's looks in it; 0 when nothing was drawn.
-    lens: See `Renderer._lens`.
-  """
-
-  pixels: np.ndarray
-  room: np.ndarray
-  poses: np.ndarray = _unseen()
-  places: tuple[np.ndarray, np.ndarray] = (np.empty(0), np.empty(0))
-  eye: np.ndarray = _unseen()
-  boxes: np.ndarray = _unseen()
-  shown: dict[windows.Window, frozenset[int]] = dataclasses.field(
-    default_factory=dict
-  )
-  looks: int = 0
-  lens: tuple[float, float, bool] = (0.0, 0.0, False)
-
-  @property
-  def size(self) -> tuple[int, int]:
-    """Width and height of the picture."""
-    height, width = self.pixels.shape[:2]
-    return width, height
 
 
 class Renderer:
@@ -117,7 +75,7 @@ class Renderer:
     self._perturb = mujoco.MjvPerturb()
     self._camera = mujoco.MjvCamera()
     self._camera.type = mujoco.mjtCamera.mjCAMERA_FIXED
-    self._canvases: dict[int, _Canvas] = {}
+    self._canvases: dict[int, canvas_lib.Canvas] = {}
     headlight = model.vis.headlight
     self._look_fields = [
       *(getattr(model, name) for name in _LOOKS),
@@ -169,7 +127,7 @@ class Renderer:
     if camera_id not in self._canvases:
       width, height = self._model.cam_resolution[camera_id]
       blank = np.empty((2, height, width, 3), np.uint8)
-      self._canvases[camera_id] = _Canvas(*blank)
+      self._canvases[camera_id] = canvas_lib.Canvas(*blank)
     canvas = self._canvases[camera_id]
     self._watch_looks()
     began = canvas.looks == self._looks_version
@@ -192,7 +150,7 @@ class Renderer:
       self._find_parts()  # Their boxes follow from places and sizes.
 
   def _take_poses(
-    self, camera_id: int, canvas: _Canvas, began: bool
+    self, camera_id: int, canvas: canvas_lib.Canvas, began: bool
   ) -> tuple[np.ndarray, bool]:
     """Shows what has moved where it is now.
 
@@ -210,7 +168,7 @@ class Renderer:
       canvas.places = np.empty((len(geoms), 3)), np.empty((len(geoms), 9))
       canvas.boxes = np.empty((len(bodies), 4), int)
       canvas.looks, canvas.shown = self._looks_version, {}
-      canvas.lens = self._lens(camera_id)
+      canvas.lens = canvas_lib.lens(self._model, camera_id)
     far = np.abs(canvas.poses - poses).max(axis=1, initial=0.0) > _STILL
     moved = np.flatnonzero(far)
     if moved.size:
@@ -224,7 +182,11 @@ class Renderer:
     return moved, eye_moved
 
   def _redraw(
-    self, camera_id: int, canvas: _Canvas, moved: np.ndarray, anew: bool
+    self,
+    camera_id: int,
+    canvas: canvas_lib.Canvas,
+    moved: np.ndarray,
+    anew: bool,
   ) -> None:
     """Brings a picture up to date; needs the current GL context."""
     self._camera.fixedcamid = camera_id
@@ -253,7 +215,9 @@ class Renderer:
     canvas.shown = wanted
 
   @contextlib.contextmanager
-  def _as_shown(self, camera_id: int, canvas: _Canvas) -> Iterator[None]:
+  def _as_shown(
+    self, camera_id: int, canvas: canvas_lib.Canvas
+  ) -> Iterator[None]:
     """Everything is where the picture shows it."""
     data, geoms = self._physics.data.ptr, self._moving_geoms
     now = data.geom_xpos[geoms], data.geom_xmat[geoms]
@@ -270,7 +234,7 @@ class Renderer:
 
   def _draw(
     self,
-    canvas: _Canvas,
+    canvas: canvas_lib.Canvas,
     window: windows.Window,
     pixels: np.ndarray,
     hidden: np.ndarray,
@@ -287,7 +251,7 @@ class Renderer:
     pixels[windows.slices(window)] = means[::-1]  # OpenGL counts from below.
 
   def _update_scene(
-    self, canvas: _Canvas, window: windows.Window, hidden: np.ndarray
+    self, canvas: canvas_lib.Canvas, window: windows.Window, hidden: np.ndarray
   ) -> None:
     """Fills the scene with what the window can show, seen through it."""
     seen = windows.touching(window, canvas.boxes)
@@ -310,7 +274,9 @@ class Renderer:
       camera.frustum_top = half_height * (1 - 2 * top / full_height)
       camera.frustum_bottom = half_height * (1 - 2 * bottom / full_height)
 
-  def _project(self, canvas: _Canvas, parts: np.ndarray) -> np.ndarray:
+  def _project(
+    self, canvas: canvas_lib.Canvas, parts: np.ndarray
+  ) -> np.ndarray:
     """Windows (K, 4) int that hold parts (K,); empty when out of view."""
     poses = canvas.poses[parts]
     rotation = poses[:, 3:].reshape(-1, 3, 3)
@@ -321,14 +287,3 @@ class Renderer:
     if flat:  # As if everything were 1 m away.
       in_eye[..., 2] = -1.0
     return windows.around(in_eye, near_m, focal_px, canvas.size)
-
-  def _lens(self, camera_id: int) -> tuple[float, float, bool]:
-    """Distance of the near plane, focal length in px, whether orthographic."""
-    model = self._model
-    near_m = float(model.vis.map.znear * model.stat.extent)
-    fovy = float(model.cam_fovy[camera_id])
-    height = int(model.cam_resolution[camera_id][1])
-    orthographic = mujoco.mjtProjection.mjPROJ_ORTHOGRAPHIC
-    if model.cam_projection[camera_id] == orthographic:
-      return near_m, height / fovy, True  # `fovy` is the picture's height in m.
-    return near_m, camera_lib.focal_length_px(height, fovy), False

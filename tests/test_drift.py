@@ -145,7 +145,7 @@ def test_a_drift_of_5_mm_is_no_motion_and_lets_flights_arrive(
     cameras=False, observers=2, seed=seed, drift=scene_drift, **short
   )
   task = environment.task
-  begin_s = task._parts.dance.end_s + 3.0
+  begin_s = task.performer.end_s + 3.0
   agent = _Navigating(begin_s)
   positions, drifts, rewards = [], [], np.zeros(2)
   for timestep in episode(environment, agent):

@@ -45,7 +45,7 @@ def flaw(
 
 def note(scenes: Sequence[scenario.Scenario], receiver_name: str) -> str:
   """What people should know before such dances are flown; mostly nothing."""
-  sent = [scene for scene in scenes if scene.sends_message]
+  sent = [scene for scene in scenes if scene.performance.message is not None]
   flaws = [why for scene in sent if (why := flaw(scene, receiver_name))]
   if not flaws:
     return ''

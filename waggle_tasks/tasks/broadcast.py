@@ -1,20 +1,20 @@
 """The broadcast: one performer dances, observers read it and fly."""
 
 from collections.abc import Sequence
-import math
 
 from dm_control import composer, mjcf
 from dm_control.composer.observation import observable
 from dm_env import specs
 import numpy as np
 
-from waggle_tasks.arenas import flight_room, layouts
-from waggle_tasks.entities import controller, observer, performer
+from waggle_tasks.arenas import flight_room
+from waggle_tasks.entities import observer, performer
 from waggle_tasks.protocol import agreement as agreement_lib
 from waggle_tasks.tasks import (
   actions,
   contacts,
   copies,
+  fleet,
   flights,
   safety,
   switches,
@@ -51,15 +51,9 @@ class Broadcast(copies.Uncopied, composer.Task):
     self._observers = {o.mjcf_model.model: o for o in parts.observers}
     self._dancers = parts.dancers
     dancing = {name: each.vehicle for name, each in self._dancers.items()}
-    self._vehicles = {**dancing, **self._observers}
-    self._joints, self._controllers = [], {}
-    for name, vehicle in self._vehicles.items():
-      pose = parts.poses[name]
-      attached = parts.room.add_vehicle(vehicle, pose)
-      self._joints.append(attached.freejoint)
-      self._controllers[name] = controller.Controller(
-        parts.room.mjcf_model, vehicle, pose.yaw_rad
-      )
+    self._fleet = fleet.Fleet(
+      parts.room, {**dancing, **self._observers}, parts.poses
+    )
     for visible in self.observables:
       for name in OBSERVATIONS:
         visible[name].enabled = True
@@ -123,11 +117,7 @@ class Broadcast(copies.Uncopied, composer.Task):
   ) -> None:
     """Finds the vehicles' joints and actuators in the compiled model."""
     del random_state
-    joints, axes = physics.bind(self._joints).element_id, np.arange(3)
-    self._places = physics.model.jnt_qposadr[joints][:, None] + axes  # (N, 3)
-    self._rates = physics.model.jnt_dofadr[joints][:, None] + axes  # (N, 3)
-    for each in self._controllers.values():
-      each.after_compile(physics)
+    self._fleet.after_compile(physics)
 
   def initialize_episode(
     self, physics: mjcf.Physics, random_state: np.random.RandomState
@@ -139,26 +129,12 @@ class Broadcast(copies.Uncopied, composer.Task):
       ObservableError: if something is to be observed that nobody can see.
     """
     switches.check(self, self.observers, physics)
-    poses = layouts.jittered(
-      [self._parts.poses[name] for name in self._vehicles],
-      self._parts.jitter_m,
-      random_state,
-    )
-    self._homes = dict(zip(self._vehicles, poses, strict=True))
+    self._fleet.place(physics, self._parts.jitter_m, random_state)
     drift = self._parts.drift
-    self._wanders = {
-      name: (drift.performer if name in self._dancers else drift.observer)(
-        random_state
-      )
-      for name in self._vehicles
-    }
-    for name, pose in self._homes.items():
-      half_rad = pose.yaw_rad / 2
-      self._vehicles[name].set_pose(
-        physics,
-        np.array(pose.position_m),
-        np.array([math.cos(half_rad), 0.0, 0.0, math.sin(half_rad)]),
-      )
+    self._fleet.let_drift(
+      {name: drift.performer(random_state) for name in self._dancers}
+      | {name: drift.observer(random_state) for name in self._observers}
+    )
     self._clock = clock_lib.Clock(physics, self.agreement)
     for each in self._dancers.values():
       each.vehicle.perform(each.performance.schedule)
@@ -171,7 +147,7 @@ class Broadcast(copies.Uncopied, composer.Task):
     if message is not None:
       displacement_m = message.displacement_m(self.agreement.units)
     self._flights = flights.Flights(
-      {n: np.array(self._homes[n].position_m) for n in self._observers},
+      {n: np.array(self._fleet.homes[n].position_m) for n in self._observers},
       displacement_m,
       self._parts.minimum_spacing_m,
       self.agreement,
@@ -202,18 +178,18 @@ class Broadcast(copies.Uncopied, composer.Task):
       self._replay(physics)
     time_s, middle_s = self._clock.time_s, self._clock.middle_s
     for name, dancer in self._dancers.items():
-      home = self._homes[name]
+      home = self._fleet.homes[name]
       motion = dancer.vehicle.motion(
         np.array(home.position_m), home.yaw_rad, middle_s
       )
-      self._command(physics, name, motion)
+      self._fleet.command(physics, name, middle_s, motion)
     wanted = actions.read(action, [*self._observers])
     followed = self._flights.follow(
       wanted, self.positions_m(physics), self.drifts_m(), time_s
     )
     for name, each in followed.items():
       motion = each.position_m, each.velocity_mps, each.acceleration_mps2
-      self._command(physics, name, motion, each.turn_rad)
+      self._fleet.command(physics, name, middle_s, motion, each.turn_rad)
 
   def _replay(self, physics: mjcf.Physics) -> None:
     """Goes on from a time that the physics was set to."""
@@ -231,24 +207,6 @@ class Broadcast(copies.Uncopied, composer.Task):
     self._begin_flights()
     physics.forward()
 
-  def _command(
-    self,
-    physics: mjcf.Physics,
-    name: str,
-    motion: Sequence[np.ndarray],  # Position, velocity, acceleration, (3,) each
-    turn_rad: float = 0.0,
-  ) -> None:
-    """Commands a vehicle to where it drifts from where it should be."""
-    drift = self._wanders[name].at(
-      (self._clock.frame + 0.5) * self.agreement.frame_s
-    )
-    place_m, velocity_mps, acceleration_mps2 = (
-      each + off[:3] for each, off in zip(motion, drift, strict=True)
-    )
-    self._controllers[name].command(
-      physics, place_m, velocity_mps, acceleration_mps2, turn_rad + drift[0][3]
-    )
-
   def after_substep(
     self, physics: mjcf.Physics, random_state: np.random.RandomState
   ) -> None:
@@ -264,7 +222,7 @@ class Broadcast(copies.Uncopied, composer.Task):
     del random_state
     self._clock.tick(physics)
     self._contacts = tuple(sorted(self._touched))
-    drifts = self._drifts()
+    drifts = self._fleet.drifts(self._clock.time_s)
     positions_m = self.positions_m(physics)
     velocities_mps = self.velocities_mps(physics)
     self._rewards = self._flights.update(
@@ -275,28 +233,19 @@ class Broadcast(copies.Uncopied, composer.Task):
 
   def positions_m(self, physics: mjcf.Physics) -> dict[str, np.ndarray]:
     """True position of every vehicle, (3,) world metres, by its name."""
-    positions = physics.data.qpos[self._places]
-    return dict(zip(self._vehicles, positions, strict=True))
+    return self._fleet.positions_m(physics)
 
   def velocities_mps(self, physics: mjcf.Physics) -> dict[str, np.ndarray]:
     """True velocity of every vehicle, (3,) world m/s, by its name."""
-    velocities = physics.data.qvel[self._rates]
-    return dict(zip(self._vehicles, velocities, strict=True))
+    return self._fleet.velocities_mps(physics)
 
   def drifts_m(self) -> dict[str, np.ndarray]:
     """How far each vehicle is taken from its reference, (3,), by its name.
 
     What a vehicle was told to do is judged without it: nobody is told of it.
     """
-    return {name: place for name, (place, _) in self._drifts().items()}
-
-  def _drifts(self) -> dict[str, tuple[np.ndarray, np.ndarray]]:
-    """Drift and its velocity now, (3,) each, by vehicle."""
-    out = {}
-    for name, wander in self._wanders.items():
-      place, rate, _ = wander.at(self._clock.time_s)
-      out[name] = place[:3], rate[:3]
-    return out
+    drifts = self._fleet.drifts(self._clock.time_s)
+    return {name: place for name, (place, _) in drifts.items()}
 
   @property
   def contacts(self) -> tuple[tuple[str, str], ...]:
