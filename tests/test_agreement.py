@@ -68,7 +68,7 @@ def test_a_message_is_flown_to_the_agreed_height_at_any_rate(
   while not timestep.last():
     (seen,) = timestep.observation
     time_s, place_m = float(seen['time_s']), seen['position_m']
-    if time_s >= scene.schedule.end_s and pilot.target_m is None:
+    if time_s >= scene.performance.end_s and pilot.target_m is None:
       pilot.accept(navigator.Command(scene.message, 'sent'), place_m, time_s)
     timestep = environment.step([pilot.step(place_m, time_s).to_array()])
     rewards += timestep.reward
