@@ -2,7 +2,9 @@
 
 from collections.abc import Callable
 import dataclasses
+import json
 import math
+import pathlib
 import re
 
 import numpy as np
@@ -12,7 +14,8 @@ import waggle_tasks
 from waggle_tasks import errors, layouts, receivers, registry
 from waggle_tasks import sensor as sensor_lib
 from waggle_tasks.agents import navigator
-from waggle_tasks.experiments.record import nulls, reach
+from waggle_tasks.experiments.record import archive, nulls, reach, writer
+from waggle_tasks.experiments.video import film, layout
 from waggle_tasks.protocol import gestures, timing
 
 Scenario, Agreement = waggle_tasks.Scenario, waggle_tasks.Agreement
@@ -153,7 +156,7 @@ class Steps:
   def poses(self, count: int) -> tuple[layouts.Pose, ...]:
     usual = layouts.facing_performer(0.0, -1.3)
     own = [
-      layouts.Pose((k - 2.0, -1.3, 1.0 + 0.5 * k), math.pi / 2)
+      layouts.Pose((k - 3.0, -1.3, 1.0 + 0.5 * k), math.pi / 2)
       for k in range(1, count - 1)
     ]
     lifted = dataclasses.replace(usual, position_m=(1.5, -1.3, 1.5))
@@ -166,6 +169,43 @@ def test_who_has_a_height_of_its_own_keeps_it() -> None:
   assert heights_m == [2.0, 1.5, 2.0, 1.5, 2.0]
   everybody = Scenario(observers=3, layout='line', hover_height_m=2.0).poses()
   assert {pose.position_m[2] for pose in everybody.values()} == {2.0}
+
+
+@pytest.mark.parametrize('new', [False, True])
+def test_a_run_is_read_by_what_both_sides_knew(new: bool) -> None:
+  scene = Scenario()
+  if new:
+    scene = Scenario(rate_hz=50, hover_height_m=2, camera_width_px=320)
+  config = json.loads(json.dumps(writer.config(scene, 'klt')))
+  if not new:  # As runs were left before these could be chosen.
+    for name in [*config['scenario']]:
+      if name in ('rate_hz', 'hover_height_m') or name.startswith('camera_'):
+        del config['scenario'][name]
+  assert archive.read_agreement(config) == scene.agreement
+
+
+@pytest.mark.parametrize(
+  ('shape', 'part'),
+  [
+    ((480, 640, 3), (10, 20, 337, 253)),
+    ((240, 320, 3), (10, 20, 337, 253)),
+    ((480, 480, 3), (52, 20, 253, 253)),
+    ((180, 320, 3), (10, 51, 337, 191)),
+  ],
+)
+def test_an_image_of_another_shape_is_filmed_undistorted(
+  shape: tuple[int, ...], part: tuple[int, ...]
+) -> None:
+  place = layout.Rect(10, 20, 337, 253)
+  assert layout.fitted(place, np.empty(shape, np.uint8)) == layout.Rect(*part)
+
+
+def test_a_film_has_as_many_pictures_as_there_are_images(
+  tmp_path: pathlib.Path,
+) -> None:
+  scene = Scenario(rate_hz=12.5)
+  with pytest.raises(errors.WaggleError, match=r'between 0.1 and 12.5: got 25'):
+    film.Film(tmp_path, scene, fps=25)
 
 
 def test_a_dance_too_fast_for_the_rate_is_told(

@@ -385,6 +385,15 @@ def test_a_stop_after_the_dance_is_refused_or_sends_the_message() -> None:
   assert evaluator.expected_bits(scene, 1) == scene.payload
 
 
+def test_everybody_flies_to_the_agreed_height() -> None:
+  case = Case(hover_height_m=2.0)
+  assert case.homes['observer_1'][2] == 2.0
+  assert case.verdict.passed
+  case.fly('observer_1', FORWARD_M - (0.0, 0.0, 0.7))
+  (failure,), _ = case.failures
+  assert failure.startswith('arrival: never, 700.0 mm')
+
+
 def blind(case: Case) -> Case:
   """Lets the first observer read nothing."""
   case.wait('observer_1')

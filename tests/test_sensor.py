@@ -270,7 +270,7 @@ def test_an_episode_with_everything_spoilt_is_flown(receiver: str) -> None:
     ({'noise_sigma': math.nan}, '`noise_sigma` must be a finite number'),
     ({'photons': 2.0}, '`photons` must be 0 or at least 10: got 2.0'),
     ({'photons': 1e7}, '`photons` must be between 0 and 1e'),
-    ({'exposure_s': 0.05}, '`exposure_s` must be between 0 and 0.04: got 0.05'),
+    ({'exposure_s': 0.2}, '`exposure_s` must be between 0 and 0.1: got 0.2'),
     ({'step_gain': 0.0}, '`step_gain` must be between 0.1 and 10: got 0.0'),
     ({'step_s': -1.0}, '`step_s` must be between 0 and 600: got -1.0'),
     ({'flicker_share': 1.1}, '`flicker_share` must be between 0 and 1'),

@@ -96,7 +96,11 @@ def test_a_corruptor_of_a_users_own_acts_on_what_comes(
 @pytest.mark.parametrize(
   ('control_s', 'physics_s', 'error'),
   [
-    (0.02, 0.004, r'`control_timestep` must be 0.04 s, .* at 25 Hz, .*: got 0.02'),
+    (
+      0.02,
+      0.004,
+      r'`control_timestep` must be 0.04 s, .* at 25 Hz: got 0.02',
+    ),
     (0.08, 0.004, '`control_timestep` must be 0.04 s'),
     (np.nan, 0.004, '`control_timestep` must be 0.04 s'),
     (0.04, 0.02, '`physics_timestep` must be above 0 and at most 0.01 s'),

@@ -136,7 +136,7 @@ class Scenario:
     agreed = self.agreement  # Which checks itself.
     for name in ('rate_hz', 'hover_height_m'):
       checks.settle(self, name, getattr(agreed, name))
-    self._check_frames()
+    self._check_exposure(agreed.frame_s)
     limits = {
       'black_observer': (1, self.observers),
       'distance_m': (0.2, 4.0),
@@ -236,9 +236,8 @@ class Scenario:
     layouts.check_spacing(poses, safety.MINIMUM_SPACING_M + nearer_m)
     return poses
 
-  def _check_frames(self) -> None:
-    """Refuses what does not fit into the time from one image to the next."""
-    frame_s = self.agreement.frame_s
+  def _check_exposure(self, frame_s: float) -> None:
+    """Refuses one that takes longer than from one image to the next."""
     if self.sensor.exposure_s > frame_s:
       raise ScenarioError(
         f'`exposure_s` must be at most {frame_s:g} s, the time from one image'

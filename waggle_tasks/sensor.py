@@ -24,7 +24,7 @@ _LIMITS = {
   'repeated_share': (0.0, 1.0),
   'freeze_s': (0.0, ALWAYS_S),
   'freeze_length_s': (0.0, ALWAYS_S),
-  'late_frames': (0, 25),
+  'late_frames': (0, 25),  # A second of the paper's camera.
   'dropped_share': (0.0, 1.0),
 }
 

@@ -58,7 +58,7 @@ class Film:
     checks.choice('view', view, views, layout.VideoError)
     agreement = scene.agreement
     checks.number('video_fps', fps, 0.1, agreement.rate_hz, layout.VideoError)
-    self._step, self._pictures = agreement.rate_hz / fps, 0
+    self._rate_hz, self._fps, self._pictures = agreement.rate_hz, fps, 0
     if view == layout.COMPOSITE:
       self._lens = lens.Lens(scene)
       shown = layout.pages(names)
@@ -104,7 +104,7 @@ class Film:
   ) -> None:
     """Looks at a frame, and films it when the video has a picture for it."""
     self._lens.note(environment, timestep, team)
-    due = round(self._pictures * self._step)
+    due = round(self._pictures * self._rate_hz / self._fps)
     if self._lens.frame < due:
       return
     self._pictures += 1

@@ -49,6 +49,17 @@ def test_every_image_and_time_comes_back_exactly(
   assert count == len(clip.images)
 
 
+@pytest.mark.parametrize('shape', [(240, 320, 3), (441, 333, 3), (16, 17, 3)])
+def test_images_of_any_size_come_back_exactly(
+  shape: tuple[int, ...], tmp_path: pathlib.Path
+) -> None:
+  images = [np.full(shape, 50, np.uint8) for _ in range(4)]
+  images[1][3, 5] = images[2][-1, -1] = images[3][:, 0] = 7
+  path = write(tmp_path / 'x.capture', images)
+  seen = [image.copy() for image, _ in capture.read(path)]
+  np.testing.assert_array_equal(seen, images)
+
+
 @pytest.mark.parametrize(
   ('row', 'column', 'channel'),
   [(0, 0, 0), (479, 639, 2), (0, 639, 1), (479, 0, 0), (7, 2, 2), (7, 3, 0)],

@@ -37,9 +37,9 @@ def check_timesteps(
   """
   if not abs(control_s - agreement.frame_s) <= 1e-9:
     raise ClockError(
-      f'`control_timestep` must be {agreement.frame_s:g} s, as images,'
-      f' references and the dance come at {agreement.rate_hz:g} Hz, the'
-      f' `rate_hz` of the scenario: got {control_s!r}'
+      f'`control_timestep` must be {agreement.frame_s:g} s, as by `rate_hz` of'
+      ' the scenario images, references and the dance come at'
+      f' {agreement.rate_hz:g} Hz: got {control_s!r}'
     )
   if not 0 < physics_s <= MAX_PHYSICS_TIMESTEP_S:
     raise ClockError(
