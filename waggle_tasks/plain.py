@@ -84,7 +84,8 @@ def _plain(value: Any, kind: Any) -> Any:  # noqa: ANN401
     return _place(value)
   if not dataclasses.is_dataclass(value):  # Of one's own.
     return {_place(type(value)): _plain(getattr(value, '__dict__', {}), Any)}
-  hints = _hints(type(value))
+  made: Any = type(value)
+  hints = _hints(made)
   table = {
     field.name: _plain(getattr(value, field.name), hints.get(field.name, Any))
     for field in dataclasses.fields(value)

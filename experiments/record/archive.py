@@ -1,37 +1,63 @@
 """Reads run folders back: everything that a run has left behind."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Sequence
 import dataclasses
 import json
 import math
 import pathlib
-from typing import Any
+import typing
+from typing import Any, TypeVar
 import zipfile
 
 import numpy as np
 
-from waggle_tasks import errors
-from waggle_tasks.agents import observer_agent, receiver, recogniser
-from waggle_tasks.experiments.record import episode, story
+from waggle_tasks import errors, plain, scenario
+from waggle_tasks.experiments.record import encoding, episode, story, verdicts
 from waggle_tasks.experiments.record import traces as traces_lib
 from waggle_tasks.protocol import agreement as agreement_lib
-from waggle_tasks.protocol import (
-  clock,
-  decoys,
-  frame,
-  gestures,
-  payload,
-  timing,
-)
-from waggle_tasks.protocol.symbols import Symbol
-from waggle_tasks.tasks import safety
+from waggle_tasks.protocol import decoys, payload
 
 TRACES, POSITIONS = 'traces.npz', 'positions.npz'
 PAGE = 'index.html'  # Of any folder: made from the data beside it.
 
+_Value = TypeVar('_Value')
+
 
 class ArchiveError(errors.WaggleError):
   """A run folder that is not one, or whose files are damaged."""
+
+
+@dataclasses.dataclass(frozen=True)
+class Config:
+  """What was flown, as config.json has it.
+
+  Attributes:
+    receiver: How observers read.
+    scenario: The scenario as plain data: its layout may be of a class that
+      this machine does not have.
+    agreement: What both sides knew.
+  """
+
+  receiver: str
+  scenario: dict[str, Any]
+  agreement: agreement_lib.Agreement
+
+
+@dataclasses.dataclass(frozen=True)
+class Result:
+  """What came out, as result.json has it.
+
+  Attributes:
+    passed: Whether no check of any observer failed.
+    correct: How many observers read what was sent to them.
+    simulated_s: How long the episode was.
+    outcomes: One for each observer.
+  """
+
+  passed: bool
+  correct: int
+  simulated_s: float
+  outcomes: tuple[verdicts.Outcome, ...]
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -50,8 +76,8 @@ class Run:
   """
 
   folder: pathlib.Path
-  config: dict
-  result: dict
+  config: Config
+  result: Result
   provenance: dict
   events: dict[str, tuple[episode.Event, ...]]
   traces: dict[str, traces_lib.Trace]
@@ -61,19 +87,14 @@ class Run:
   @property
   def scenario(self) -> dict:
     """The fields of the scenario."""
-    return self.config['scenario']
-
-  @property
-  def agreement(self) -> agreement_lib.Agreement:
-    """What both sides knew."""
-    return read_agreement(self.config)
+    return self.config.scenario
 
   @property
   def sent(self) -> tuple[story.Sent, ...]:
     """What the performer flew."""
     scene = self.scenario
     bits = payload.Payload.from_bits(scene['payload'])
-    known = self.agreement
+    known = self.config.agreement
     dance = decoys.dance(
       scene['control'], bits, scene['seed'], known.codebook, known.pauses
     )
@@ -92,11 +113,11 @@ def load(folder: pathlib.Path) -> Run:
 
   Raises:
     ArchiveError: naming the file that is missing or damaged.
-    TraceError: the same, of the traces.
+    FormatError: if a newer program wrote it.
+    TraceError: as ArchiveError, of the traces.
   """
-  config = read_json(folder / 'config.json')
-  result = read_json(folder / 'result.json')
-  names = [each['observer'] for each in result['outcomes']]
+  config, result = read_config(folder), read_result(folder)
+  names = [each.observer for each in result.outcomes]
   positions_m = _positions(folder / POSITIONS)
   return Run(
     folder,
@@ -110,11 +131,12 @@ def load(folder: pathlib.Path) -> Run:
   )
 
 
-def read_json(path: pathlib.Path) -> dict:
-  """Reads a JSON object.
+def read_json(path: pathlib.Path) -> dict[str, Any]:
+  """Reads a JSON object, without its format.
 
   Raises:
     ArchiveError: if there is none.
+    FormatError: if a newer program wrote it.
   """
   try:
     value = json.loads(path.read_text(encoding='utf-8'))
@@ -126,32 +148,97 @@ def read_json(path: pathlib.Path) -> dict:
     raise ArchiveError(f'{path} cannot be read: {error}') from None
   if not isinstance(value, dict):
     raise ArchiveError(f'{path} must hold a JSON object')
+  encoding.check_format(value, path)
+  value.pop('format', None)
   return value
 
 
-def read_agreement(config: Mapping) -> agreement_lib.Agreement:
-  """What both sides know, by a run's configuration."""
-  scene = config['scenario']
-  codebook = gestures.Codebook(
-    tuple(
-      gestures.Gesture(
-        Symbol(each['symbol']),
-        tuple(map(tuple, each['corners_m'])),
-        each['duration_s'],
-      )
-      for each in scene['codebook']['gestures']
-    )
-  )
-  pauses, units = (
-    timing.Timing(**scene['pauses']),
-    payload.Units(**scene['units']),
-  )
-  tolerance = clock.Tolerance(**scene['tolerance'])
-  return agreement_lib.Agreement(codebook, pauses, tolerance, units)
+def read_rows(path: pathlib.Path) -> list[dict[str, Any]]:
+  """Reads lines of results, each with its format.
+
+  Raises:
+    ArchiveError: if there are none, or one is no JSON object.
+    FormatError: if a newer program wrote one.
+  """
+  try:
+    lines = path.read_text(encoding='utf-8').splitlines()
+    rows = [json.loads(line) for line in lines]
+  except (OSError, ValueError) as error:
+    raise ArchiveError(f'{path} cannot be read: {error}') from None
+  for number, row in enumerate(rows, 1):
+    if not isinstance(row, dict):
+      raise ArchiveError(f'{path} must hold JSON objects: line {number}')
+    encoding.check_format(row, f'{path}, line {number}')
+  return rows
+
+
+def _config(path: pathlib.Path) -> Config:
+  table = read_json(path)
+  scene = table.get('scenario')
+  if 'agreement' not in table and isinstance(scene, dict):
+    # Of the oldest format: the scenario had all of it, by the same names.
+    names = [
+      field.name for field in dataclasses.fields(agreement_lib.Agreement)
+    ]
+    table['agreement'] = {
+      name: value for name, value in scene.items()
+      if name in names and isinstance(value, dict)
+    }  # fmt: skip
+  return _made(Config, table, path)
+
+
+def read_config(folder: pathlib.Path) -> Config:
+  """Reads what was flown in a run.
+
+  Raises:
+    ArchiveError: if the folder is none of a run, or its file is damaged.
+    FormatError: if a newer program wrote it.
+  """
+  return _config(folder / 'config.json')
+
+
+def read_result(folder: pathlib.Path) -> Result:
+  """Reads what came out of a run.
+
+  Raises:
+    ArchiveError: if the folder is none of a run, or its file is damaged.
+    FormatError: if a newer program wrote it.
+  """
+  path = folder / 'result.json'
+  return _made(Result, read_json(path), path)
+
+
+def read_scenario(path: pathlib.Path) -> scenario.Scenario:
+  """Reads the scenario of a run, to fly it again.
+
+  Args:
+    path: Its config.json.
+
+  Raises:
+    ArchiveError: if there is none, or it cannot be made here.
+    FormatError: if a newer program wrote it.
+  """
+  fields = _config(path).scenario
+  return _made(scenario.Scenario, fields, path, 'scenario')
+
+
+def _made(
+  kind: type[_Value], table: object, place: object, name: str = ''
+) -> _Value:
+  """A value of plain data from a file."""
+  try:
+    return plain.from_plain(kind, table, name)
+  except plain.UnknownFieldError as error:
+    raise ArchiveError(
+      f'{place} holds what this program does not know; a newer one may have'
+      f' written it: {error}'
+    ) from None
+  except errors.WaggleError as error:
+    raise ArchiveError(f'{place} is damaged: {error}') from None
 
 
 def read_events(
-  path: pathlib.Path, names: list[str]
+  path: pathlib.Path, names: Sequence[str]
 ) -> dict[str, tuple[episode.Event, ...]]:
   """Reads an event log.
 
@@ -168,40 +255,24 @@ def read_events(
   except OSError as error:
     raise ArchiveError(f'{path} cannot be read: {error.strerror}') from None
   for number, line in enumerate(lines, 1):
+    place = f'{path}, line {number},'
     try:
       row = json.loads(line)
-      events[row.pop('observer')].append(_MAKERS[row.pop('kind')](row))
-    except (ValueError, KeyError, TypeError) as error:
+      own, kind = events[row.pop('observer')], row.pop('kind')
+    except (ValueError, KeyError, TypeError, AttributeError) as error:
+      raise ArchiveError(f'{place} is damaged: {error!r}') from None
+    if kind not in _EVENTS:
       raise ArchiveError(
-        f'{path} is damaged in line {number}: {error}'
-      ) from None
+        f'{place} holds what this program does not know; a newer one may have'
+        f' written it: `kind` must be one of {[*_EVENTS]}: got {kind!r}'
+      )
+    own.append(_made(_EVENTS[kind], row, place, kind))
   return {name: tuple(each) for name, each in events.items()}
 
 
-def _event(row: dict[str, Any]) -> receiver.Event:
-  row['symbol'], row['state'] = Symbol(row['symbol']), frame.State(row['state'])
-  if row['message'] is not None:
-    row['message'] = payload.Payload.from_bits(row['message'])
-  if row['recognition'] is not None:
-    scores = dict(row['recognition'])
-    for field in ('symbol', 'best'):
-      scores[field] = Symbol(scores[field])
-    row['recognition'] = recogniser.Recognition(**scores)
-  return receiver.Event(**row)
-
-
-def _navigation(row: dict[str, Any]) -> observer_agent.Navigation:
-  row['deed'] = observer_agent.Deed(row['deed'])
-  row['target_m'] = tuple(row['target_m'])
-  row['payload'] = payload.Payload.from_bits(row['payload'])
-  return observer_agent.Navigation(**row)
-
-
 # By the `kind` of a line, see `writer.event_lines`.
-_MAKERS: dict[str, Callable[[dict[str, Any]], episode.Event]] = {
-  'event': _event,
-  'navigation': _navigation,
-  'refusal': lambda row: safety.Refusal(**row),
+_EVENTS: dict[str, type[episode.Event]] = {
+  each.__name__.lower(): each for each in typing.get_args(episode.Event)
 }
 
 

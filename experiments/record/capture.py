@@ -31,7 +31,9 @@ if TYPE_CHECKING:
 FOLDER = 'raw'
 SUFFIX = '.capture'
 SHAPE = (480, 640, 3)  # Paper, section 'Scene, sensors, ...'.
-_MAGIC = b'waggle capture 1\n'
+_FORMAT = 1
+_NAME = b'waggle capture '
+_MAGIC = b'%b%d\n' % (_NAME, _FORMAT)
 _RECORD = struct.Struct('<dHHHHI')
 _CRC = struct.Struct('<I')
 _WORDS = 8  # Bytes that are compared at a time.
@@ -136,8 +138,7 @@ def read(path: pathlib.Path) -> Iterator[tuple[np.ndarray, float]]:
 def _images(
   file: BinaryIO, path: pathlib.Path
 ) -> Iterator[tuple[np.ndarray, float]]:
-  if file.read(len(_MAGIC)) != _MAGIC:
-    raise CaptureError(f'{path} is not a capture: it begins otherwise')
+  _check(file.readline(len(_MAGIC) + _CRC.size), path)
   image, count, crc = np.zeros(SHAPE, np.uint8), 0, zlib.crc32(_MAGIC)
   while True:
     record = file.read(_RECORD.size)
@@ -160,6 +161,19 @@ def _images(
     image[top : top + height, left : left + width] = window
     count += 1
     yield image, time_s
+
+
+def _check(magic: bytes, path: pathlib.Path) -> None:
+  """Refuses what is no capture, or one of another format."""
+  if magic == _MAGIC:
+    return
+  number = magic.removeprefix(_NAME).removesuffix(b'\n')
+  if magic.startswith(_NAME) and number.isdigit():
+    raise CaptureError(
+      f'`format` of {path} must be {_FORMAT} for this program: got'
+      f' {int(number)}, which a newer one wrote; update waggle-tasks to read it'
+    )
+  raise CaptureError(f'{path} is not a capture: it begins otherwise')
 
 
 def _window(data: bytes, shape: tuple[int, int, int]) -> np.ndarray | None:

@@ -100,24 +100,23 @@ def flaw(folder: pathlib.Path, identity_: str) -> str | None:
 def row(case: suites.Case, folder: pathlib.Path) -> dict[str, Any]:
   """A case's line of results.jsonl, from its sealed folder."""
   seal = json.loads((folder / SEAL).read_text(encoding='utf-8'))
-  result = json.loads((folder / 'result.json').read_text(encoding='utf-8'))
-  config = json.loads((folder / 'config.json').read_text(encoding='utf-8'))
-  expecting = sum(o['expected'] is not None for o in result['outcomes'])
-  return {
+  config, result = archive.read_config(folder), archive.read_result(folder)
+  whole = {
     'case': case.name,
     'group': case.group,
     'label': case.label,
     'identity': seal['identity'],
-    'receiver': config['receiver'],
+    'receiver': config.receiver,
     'observers': case.scene.observers,
-    'expecting': expecting,
-    'correct': result['correct'],
-    'passed': result['passed'],
-    'simulated_s': result['simulated_s'],
-    'published': encoding.to_json(case.published),
-    'outcomes': result['outcomes'],
-    'scenario': config['scenario'],
+    'expecting': sum(o.expected is not None for o in result.outcomes),
+    'correct': result.correct,
+    'passed': result.passed,
+    'simulated_s': result.simulated_s,
+    'published': case.published,
+    'outcomes': result.outcomes,
+    'scenario': config.scenario,
   }
+  return encoding.stamped(whole)
 
 
 def _sha(path: pathlib.Path) -> str:

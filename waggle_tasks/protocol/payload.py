@@ -20,8 +20,10 @@ class Units:
   """What one count of the heading and the distance field means.
 
   Attributes:
-    heading_step_rad: alpha of equation 1, pi/4 rad in the paper.
-    distance_unit_m: u of equation 2, 0.2 m in the paper.
+    heading_step_rad: Angle of one heading count, alpha of equation 1; 45
+      degrees in the paper.
+    distance_unit_m: Length of one distance count, u of equation 2; 0.2 m in the
+      paper.
   """
 
   heading_step_rad: float = math.pi / 4
