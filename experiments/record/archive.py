@@ -153,11 +153,18 @@ def read_json(path: pathlib.Path) -> dict[str, Any]:
   return value
 
 
-def read_rows(path: pathlib.Path) -> list[dict[str, Any]]:
-  """Reads lines of results, each with its format.
+def read_rows(
+  path: pathlib.Path, needed: Sequence[str], of_outcome: Sequence[str]
+) -> list[dict[str, Any]]:
+  """Reads lines of results, as many as there are.
+
+  Args:
+    path: The file.
+    needed: What each must have.
+    of_outcome: What each of its outcomes must have.
 
   Raises:
-    ArchiveError: if there are none, or one is no JSON object.
+    ArchiveError: if there is no file, or a line lacks something.
     FormatError: if a newer program wrote one.
   """
   try:
@@ -166,10 +173,22 @@ def read_rows(path: pathlib.Path) -> list[dict[str, Any]]:
   except (OSError, ValueError) as error:
     raise ArchiveError(f'{path} cannot be read: {error}') from None
   for number, row in enumerate(rows, 1):
-    if not isinstance(row, dict):
-      raise ArchiveError(f'{path} must hold JSON objects: line {number}')
-    encoding.check_format(row, f'{path}, line {number}')
+    place = f'{path}, line {number},'
+    if isinstance(row, dict):
+      encoding.check_format(row, place)
+    _check_has(row, needed, place)
+    for outcome in row['outcomes']:
+      _check_has(outcome, of_outcome, place)
   return rows
+
+
+def _check_has(table: object, needed: Sequence[str], place: str) -> None:
+  for name in needed:
+    if not isinstance(table, dict) or name not in table:
+      raise ArchiveError(
+        f'{place} cannot be read: it has no `{name}`, and is of something else'
+        f' or of another version: {str(table)[:60]}'
+      )
 
 
 def _config(path: pathlib.Path) -> Config:
