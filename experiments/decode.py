@@ -88,7 +88,7 @@ def _folder(folder: pathlib.Path) -> int:
   ]  # fmt: skip
   if given:
     raise DecodeError(f'`{given[0].name}` is about a video: {folder} is none')
-  config = archive.read_config(folder)
+  config = archive.read_config(folder / 'config.json')
   agreement, own = config.agreement, config.receiver
   names = list(dict.fromkeys(_RECEIVER.value or [own]))
   status = 0

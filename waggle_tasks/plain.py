@@ -13,34 +13,19 @@ import enum
 import functools
 import importlib
 import inspect
-import math
 import pathlib
-import types
 import typing
 from typing import Any, TypeVar
 
 import numpy as np
 
-from waggle_tasks import errors
+from waggle_tasks import errors, kinds
 from waggle_tasks.protocol import gestures, payload
 
 _Value = TypeVar('_Value')
 # What makes a value of numbers that stand for its fields.
 _SHORT: Mapping[object, Callable[..., Any]] = {
   gestures.Codebook: gestures.v_codebook
-}
-_LISTS = tuple, list, set, frozenset
-# Kinds that are written without a table: their data, and that in words.
-_FORMS: Mapping[object, tuple[type | tuple[type, ...], str]] = {
-  types.NoneType: (types.NoneType, 'None'),
-  bool: (bool, 'True or False'),
-  int: (int, 'an integer'),
-  float: ((int, float), 'a finite number'),
-  str: (str, 'text'),
-  payload.Payload: (str, 'six bits'),
-  pathlib.Path: (str, 'a path'),
-  np.ndarray: (list, 'an array of numbers'),
-  **dict.fromkeys(_LISTS, ((list, tuple), 'a list')),
 }
 
 
@@ -69,11 +54,11 @@ def _plain(value: Any, kind: Any) -> Any:  # noqa: ANN401
     case None | str() | bool() | int() | float():
       return value
     case Mapping():
-      inner = _inner(kind, Mapping, 2)[1]
+      inner = kinds.inner(kind, type(value), 2)[1]
       return {str(name): _plain(each, inner) for name, each in value.items()}
     case list() | tuple():
-      kinds = _inner(kind, type(value), len(value))
-      return [_plain(v, k) for v, k in zip(value, kinds, strict=True)]
+      inner = kinds.inner(kind, type(value), len(value))
+      return [_plain(v, k) for v, k in zip(value, inner, strict=True)]
     case set() | frozenset():
       return sorted((_plain(each, Any) for each in value), key=repr)
     case pathlib.PurePath():
@@ -85,12 +70,12 @@ def _plain(value: Any, kind: Any) -> Any:  # noqa: ANN401
   if not dataclasses.is_dataclass(value):  # Of one's own.
     return {_place(type(value)): _plain(getattr(value, '__dict__', {}), Any)}
   made: Any = type(value)
-  hints = _hints(made)
+  hints = kinds.hints(made)
   table = {
     field.name: _plain(getattr(value, field.name), hints.get(field.name, Any))
     for field in dataclasses.fields(value)
   }
-  said = [each for each in _members(kind) if each not in _FORMS]
+  said = [each for each in kinds.members(kind) if each not in kinds.FORMS]
   return table if said in ([Any], [type(value)]) else {
     _place(type(value)): table
   }  # fmt: skip
@@ -132,8 +117,8 @@ def fields(
   Raises:
     WaggleError: see `from_plain`.
   """
-  known = [*inspect.signature(maker).parameters]
-  hints, out = _hints(maker), {}
+  known = [*_parameters(maker)]
+  hints, out = kinds.hints(maker), {}
   for field, plain in table.items():
     if field in known:
       out[field] = _read(hints.get(field, Any), plain, _join(name, field))
@@ -146,28 +131,30 @@ def fields(
 
 
 def _read(kind: Any, plain: Any, name: str) -> Any:  # noqa: ANN401
-  if not _takes(kind, plain):
-    words = ' or '.join(map(_word, _members(kind)))
-    choices = [each for one in _members(kind) for each in _choices(one) or ()]
+  if not kinds.takes(kind, plain):
+    words = ' or '.join(map(kinds.word, kinds.members(kind)))
+    choices = [
+      each for one in kinds.members(kind) for each in kinds.choices(one) or ()
+    ]
     hint = errors.did_you_mean(str(plain), [*map(str, choices)])
     raise PlainError(
       f'`{name or "value"}` must be {words}: got {plain!r}.{hint}'.rstrip('.')
     )
-  kind = next(each for each in _members(kind) if _takes(each, plain))
+  kind = next(each for each in kinds.members(kind) if kinds.takes(each, plain))
   form = typing.get_origin(kind) or kind
-  if form in _LISTS:
+  if form in kinds.LISTS:
     return _read_list(kind, plain, name)
   if form is np.ndarray:
     return _read_array(plain, name)
   if form is payload.Payload:
     with _named(name):
       return payload.Payload.from_bits(plain)
-  if form is pathlib.Path or _is_enum(form):
+  if form is pathlib.Path or kinds.is_enum(form):
     return form(plain)
   if not isinstance(plain, Mapping) or kind in (Any, object):
     return plain
   if isinstance(form, type) and issubclass(form, Mapping):
-    inner = _inner(kind, Mapping, 2)[1]
+    inner = kinds.inner(kind, form, 2)[1]
     return {n: _read(inner, v, _join(name, n)) for n, v in plain.items()}
   if dataclasses.is_dataclass(form):
     return _made(form, plain, name)
@@ -176,14 +163,15 @@ def _read(kind: Any, plain: Any, name: str) -> Any:  # noqa: ANN401
 
 def _read_list(kind: Any, plain: Sequence[Any], name: str) -> Any:  # noqa: ANN401
   form = typing.get_origin(kind) or kind
-  kinds = _inner(kind, form, len(plain), strict=True)
-  if len(kinds) != len(plain):
+  inner = kinds.inner(kind, form, len(plain), strict=True)
+  if len(inner) != len(plain):
     raise PlainError(
-      f'`{name}` must hold {len(kinds)} values: got {len(plain)}'
+      f'`{name}` must hold {len(inner)} values: got {len(plain)}'
     )
-  return form(
-    _read(inner, each, f'{name}[{number}]')
-    for number, (inner, each) in enumerate(zip(kinds, plain, strict=True))
+  made: Any = tuple if form is Sequence else form
+  return made(
+    _read(one, each, f'{name}[{number}]')
+    for number, (one, each) in enumerate(zip(inner, plain, strict=True))
   )
 
 
@@ -201,7 +189,7 @@ def _made(kind: Any, table: Mapping[str, Any], name: str) -> Any:  # noqa: ANN40
   if table.keys() & {field.name for field in dataclasses.fields(kind)}:
     maker = kind
   values = fields(maker, table, name)
-  parameters = inspect.signature(maker).parameters
+  parameters = _parameters(maker)
   for field, parameter in parameters.items():
     if parameter.default is parameter.empty and field not in values:
       raise PlainError(
@@ -251,82 +239,9 @@ def _named(name: str, fields_: Sequence[str] = ()) -> Iterator[None]:
     raise PlainError(f'`{name or "value"}` cannot be made: {text}') from error
 
 
-def _takes(kind: Any, plain: object) -> bool:  # noqa: ANN401
-  """Whether data have the form of a kind."""
-  if len(members := _members(kind)) > 1:
-    return any(_takes(each, plain) for each in members)
-  if (choices := _choices(kind)) is not None:
-    return plain in choices
-  form = typing.get_origin(kind) or kind
-  if form in (Any, object):
-    return True
-  if form in (int, float) and isinstance(plain, bool):
-    return False
-  if isinstance(plain, float) and not math.isfinite(plain):
-    return False
-  return isinstance(plain, _FORMS[form][0] if form in _FORMS else Mapping)
-
-
-def _word(kind: Any) -> str:  # noqa: ANN401
-  """What a kind takes, for people."""
-  if (choices := _choices(kind)) is not None:
-    return f'one of {choices}'
-  form = typing.get_origin(kind) or kind
-  if form in _FORMS:
-    return _FORMS[form][1]
-  return f'a table of {getattr(form, "__name__", form)}'
-
-
-def _choices(kind: Any) -> list[Any] | None:  # noqa: ANN401
-  """The only data that a kind takes; None where there is no list of them."""
-  if _is_enum(kind):
-    return [each.value for each in kind]
-  is_literal = typing.get_origin(kind) is typing.Literal
-  return [*typing.get_args(kind)] if is_literal else None
-
-
-def _is_enum(kind: object) -> bool:
-  return isinstance(kind, type) and issubclass(kind, enum.Enum)
-
-
-def _members(kind: Any) -> list[Any]:  # noqa: ANN401
-  """The kinds that a value may have by its declaration."""
-  is_union = typing.get_origin(kind) in (typing.Union, types.UnionType)
-  return [*typing.get_args(kind)] if is_union else [kind]
-
-
-def _inner(
-  kind: Any,  # noqa: ANN401
-  form: type,
-  count: int,
-  *,
-  strict: bool = False,
-) -> list[Any]:
-  """What the parts of a value are declared as.
-
-  Args:
-    kind: What the whole is.
-    form: Its type, maybe one of several in `kind`.
-    count: How many parts there are.
-    strict: Whether another count of parts is returned as it is declared.
-  """
-  for each in _members(kind):
-    origin, args = typing.get_origin(each), [*typing.get_args(each)]
-    if isinstance(origin, type) and args and issubclass(origin, form):
-      if args[-1] is Ellipsis or (origin is not tuple and len(args) == 1):
-        return args[:1] * count
-      if len(args) == count or strict:
-        return args
-  return [Any] * count
-
-
 @functools.cache
-def _hints(maker: Callable[..., Any]) -> dict[str, Any]:
-  """What fields are declared as, where that can be known."""
-  try:
-    return typing.get_type_hints(maker)
-  except (NameError, TypeError):  # Of names that are known to a checker alone.
-    return {}
+def _parameters(maker: Callable[..., Any]) -> Mapping[str, inspect.Parameter]:
+  return inspect.signature(maker).parameters
 
 
 def _place(made: Any) -> str:  # noqa: ANN401

@@ -10,12 +10,9 @@ import pathlib
 from waggle_tasks.experiments.pages import document, markup
 from waggle_tasks.experiments.record import archive
 from waggle_tasks.experiments.results import suite_tables
+from waggle_tasks.experiments.studies import suite_results
 
-RESULTS = 'results.jsonl'
-_FIELDS = (
-  'case', 'group', 'label', 'observers', 'expecting', 'correct', 'passed',
-  'receiver', 'simulated_s', 'published', 'outcomes',
-)  # fmt: skip
+RESULTS = suite_results.RESULTS
 
 tag = markup.tag
 
@@ -37,7 +34,7 @@ def read(folder: pathlib.Path) -> list[dict]:
     FormatError: if a newer program wrote them.
   """
   path = folder / RESULTS
-  rows = archive.read_rows(path, _FIELDS, ('observer', 'failures'))
+  rows = archive.read_rows(path, suite_results.Row)
   if not rows:
     raise archive.ArchiveError(f'{path} holds no results')
   return rows

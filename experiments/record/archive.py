@@ -116,7 +116,8 @@ def load(folder: pathlib.Path) -> Run:
     FormatError: if a newer program wrote it.
     TraceError: as ArchiveError, of the traces.
   """
-  config, result = read_config(folder), read_result(folder)
+  config = read_config(folder / 'config.json')
+  result = read_result(folder / 'result.json')
   names = [each.observer for each in result.outcomes]
   positions_m = _positions(folder / POSITIONS)
   return Run(
@@ -153,18 +154,11 @@ def read_json(path: pathlib.Path) -> dict[str, Any]:
   return value
 
 
-def read_rows(
-  path: pathlib.Path, needed: Sequence[str], of_outcome: Sequence[str]
-) -> list[dict[str, Any]]:
+def read_rows(path: pathlib.Path, kind: type) -> list[dict[str, Any]]:
   """Reads lines of results, as many as there are.
 
-  Args:
-    path: The file.
-    needed: What each must have.
-    of_outcome: What each of its outcomes must have.
-
   Raises:
-    ArchiveError: if there is no file, or a line lacks something.
+    ArchiveError: if there is no file, or a line is damaged.
     FormatError: if a newer program wrote one.
   """
   try:
@@ -172,26 +166,34 @@ def read_rows(
     rows = [json.loads(line) for line in lines]
   except (OSError, ValueError) as error:
     raise ArchiveError(f'{path} cannot be read: {error}') from None
+  check_rows(rows, kind, path)
+  return rows
+
+
+def check_rows(rows: Sequence[Any], kind: type, path: pathlib.Path) -> None:
+  """Refuses rows that could not be those of a dataclass.
+
+  Raises:
+    ArchiveError: naming the line and what is wrong with it.
+    FormatError: if a newer program wrote one.
+  """
   for number, row in enumerate(rows, 1):
     place = f'{path}, line {number},'
     if isinstance(row, dict):
       encoding.check_format(row, place)
-    _check_has(row, needed, place)
-    for outcome in row['outcomes']:
-      _check_has(outcome, of_outcome, place)
-  return rows
+    _made(kind, row, place, 'row')
 
 
-def _check_has(table: object, needed: Sequence[str], place: str) -> None:
-  for name in needed:
-    if not isinstance(table, dict) or name not in table:
-      raise ArchiveError(
-        f'{place} cannot be read: it has no `{name}`, and is of something else'
-        f' or of another version: {str(table)[:60]}'
-      )
+def read_config(path: pathlib.Path) -> Config:
+  """Reads what was flown in a run.
 
+  Args:
+    path: Its config.json.
 
-def _config(path: pathlib.Path) -> Config:
+  Raises:
+    ArchiveError: if there is none, or it is damaged.
+    FormatError: if a newer program wrote it.
+  """
   table = read_json(path)
   scene = table.get('scenario')
   if 'agreement' not in table and isinstance(scene, dict):
@@ -206,24 +208,8 @@ def _config(path: pathlib.Path) -> Config:
   return _made(Config, table, path)
 
 
-def read_config(folder: pathlib.Path) -> Config:
-  """Reads what was flown in a run.
-
-  Raises:
-    ArchiveError: if the folder is none of a run, or its file is damaged.
-    FormatError: if a newer program wrote it.
-  """
-  return _config(folder / 'config.json')
-
-
-def read_result(folder: pathlib.Path) -> Result:
-  """Reads what came out of a run.
-
-  Raises:
-    ArchiveError: if the folder is none of a run, or its file is damaged.
-    FormatError: if a newer program wrote it.
-  """
-  path = folder / 'result.json'
+def read_result(path: pathlib.Path) -> Result:
+  """Reads what came out of a run, its result.json; see `read_config`."""
   return _made(Result, read_json(path), path)
 
 
@@ -237,7 +223,7 @@ def read_scenario(path: pathlib.Path) -> scenario.Scenario:
     ArchiveError: if there is none, or it cannot be made here.
     FormatError: if a newer program wrote it.
   """
-  fields = _config(path).scenario
+  fields = read_config(path).scenario
   return _made(scenario.Scenario, fields, path, 'scenario')
 
 
