@@ -21,7 +21,7 @@ from waggle_tasks.agents import receivers
 from waggle_tasks.experiments import launch
 from waggle_tasks.experiments.flags import receiver_flag, workers_flag
 from waggle_tasks.experiments.pages import run_page, suite_page
-from waggle_tasks.experiments.record import nulls, provenance
+from waggle_tasks.experiments.record import archive, nulls, provenance
 from waggle_tasks.experiments.results import suite_tables
 from waggle_tasks.protocol import checks
 
@@ -111,7 +111,12 @@ def _compare(folders: Sequence[str]) -> int:
   if len(folders) != 2:
     raise flags.Error(f'--compare takes two folders: got {len(folders)}.')
   one, other = folders
-  a, b = (suite_page.read(pathlib.Path(folder)) for folder in folders)
+  try:
+    a, b = (suite_page.read(pathlib.Path(folder)) for folder in folders)
+  except archive.ArchiveError as error:
+    raise suites.SuiteError(
+      f'`compare` must name folders of finished suites: {error}'
+    ) from None
   print(suite_tables.compare(a, b, (one, other)))
   return 0
 

@@ -10,7 +10,7 @@ import sys
 
 import pytest
 
-from waggle_tasks import scenario
+from waggle_tasks.experiments.record import scenario_fields
 
 # Runs many command lines in one process, each from fresh flags.
 DRIVER = """
@@ -141,9 +141,9 @@ def test_help_shows_a_flag_for_every_choice(waggle: Waggle) -> None:
   assert child.returncode == 0, child.stderr
   for name in ('receiver', 'output', *NUMBERS):
     assert f'--{name}=' in child.stdout
-  for name in scenario.Scenario.__dataclass_fields__:
-    if name not in scenario.PARTS:
-      assert f'--{name}=' in child.stdout
+  for name, default in scenario_fields.defaults().items():
+    flag = f'--[no]{name} ' if isinstance(default, bool) else f'--{name}='
+    assert flag in child.stdout
   assert '--observers=3 ' in child.stdout
   assert '--payload=000010 ' in child.stdout
   assert max(map(len, child.stdout.splitlines())) <= 80

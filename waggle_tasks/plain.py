@@ -140,7 +140,8 @@ def _read(kind: Any, plain: Any, name: str) -> Any:  # noqa: ANN401
     raise PlainError(
       f'`{name or "value"}` must be {words}: got {plain!r}.{hint}'.rstrip('.')
     )
-  kind = next(each for each in kinds.members(kind) if kinds.takes(each, plain))
+  several = kinds.members(kind)
+  kind = next(each for each in several if kinds.takes(each, plain))
   form = typing.get_origin(kind) or kind
   if form in kinds.LISTS:
     return _read_list(kind, plain, name)
@@ -156,9 +157,16 @@ def _read(kind: Any, plain: Any, name: str) -> Any:  # noqa: ANN401
   if isinstance(form, type) and issubclass(form, Mapping):
     inner = kinds.inner(kind, form, 2)[1]
     return {n: _read(inner, v, _join(name, n)) for n, v in plain.items()}
-  if dataclasses.is_dataclass(form):
+  place = str(next(iter(plain))) if len(plain) == 1 else ''
+  if dataclasses.is_dataclass(form) and ':' not in place:
     return _made(form, plain, name)
-  return _read_own(plain, name)
+  found = _found(place, plain, name)
+  closed = [each for each in several if each not in kinds.FORMS]
+  if all(map(dataclasses.is_dataclass, closed)):
+    if not any(issubclass(found, each) for each in closed):
+      words = ' or '.join(each.__name__ for each in closed)
+      raise PlainError(f'`{name}` must be a {words}: got {place}')
+  return _read(found, plain[place], name)
 
 
 def _read_list(kind: Any, plain: Sequence[Any], name: str) -> Any:  # noqa: ANN401
@@ -199,9 +207,8 @@ def _made(kind: Any, table: Mapping[str, Any], name: str) -> Any:  # noqa: ANN40
     return maker(**values)
 
 
-def _read_own(table: Mapping[str, Any], name: str) -> Any:  # noqa: ANN401
-  """A value of a class that the data name, from anywhere."""
-  place = str(next(iter(table))) if len(table) == 1 else ''
+def _found(place: str, table: Mapping[str, Any], name: str) -> type:
+  """The dataclass that data name, from anywhere."""
   module, _, path = place.partition(':')
   if not module or not path:
     raise PlainError(
@@ -222,7 +229,7 @@ def _read_own(table: Mapping[str, Any], name: str) -> Any:  # noqa: ANN401
       f'`{name}` must be of a dataclass, else it cannot be made again: got'
       f' {place}'
     )
-  return _read(found, table[place], name)
+  return found
 
 
 @contextlib.contextmanager

@@ -38,13 +38,16 @@ def _help(text: str, known: Container[str]) -> str:
   return re.sub('`(.+?)`', word, text)
 
 
-def read() -> scenario.Scenario:
-  """The scenario that the flags make.
+def read(
+  usual: scenario.Scenario = scenario.Scenario(),
+) -> scenario.Scenario:
+  """A scenario, changed by the flags that were given.
 
   Raises:
     WaggleError: if a value breaks a rule of the scenario.
   """
-  return scenario_fields.make(values())
+  given = {n: v for n, v in values().items() if flags.FLAGS[n].present}
+  return scenario_fields.changed(usual, given)
 
 
 def values() -> dict[str, Any]:

@@ -196,6 +196,8 @@ def read_config(path: pathlib.Path) -> Config:
   """
   table = read_json(path)
   scene = table.get('scenario')
+  if isinstance(scene, dict):  # An older program knew fewer fields.
+    table['scenario'] = {**plain.to_plain(scenario.Scenario()), **scene}
   if 'agreement' not in table and isinstance(scene, dict):
     # Of the oldest format: the scenario had all of it, by the same names.
     names = [

@@ -5,7 +5,7 @@ its groups under their own names, its codebook and units as the numbers that
 they are made from.
 """
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 import dataclasses
 import functools
 import inspect
@@ -124,7 +124,13 @@ def changed(scene: scenario.Scenario, values: Values) -> scenario.Scenario:
   for part, numbers in parts.items():
     now = getattr(scene, part)
     if part == 'codebook':
-      whole[part] = gestures.v_codebook(**_sizes(now, [*numbers]), **numbers)
+      sizes = _v_sizes(now)
+      if sizes is None:
+        first = next(name for name in values if table()[name].part == part)
+        raise scenario.ScenarioError(
+          f'`{first}` must not be given for gestures that are no Vs'
+        )
+      whole[part] = gestures.v_codebook(**{**sizes, **numbers})
     else:
       whole[part] = dataclasses.replace(now, **numbers)
   return dataclasses.replace(scene, **whole)
@@ -159,18 +165,6 @@ def layout_name(layout: str | Values) -> str:
   if isinstance(layout, str):
     return layout
   return next(iter(layout), 'none').rpartition(':')[2]
-
-
-def _sizes(
-  codebook: gestures.Codebook, without: Sequence[str]
-) -> dict[str, float]:
-  """The numbers of a codebook of Vs but for some."""
-  sizes = _v_sizes(codebook)
-  if sizes is None:
-    raise scenario.ScenarioError(
-      f'`{without[0]}` must not be given for gestures that are no Vs'
-    )
-  return {name: size for name, size in sizes.items() if name not in without}
 
 
 @functools.lru_cache

@@ -13,7 +13,7 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 
-from waggle_tasks import scenario
+from waggle_tasks import plain, scenario
 from waggle_tasks.experiments.pages import (
   document,
   markup,
@@ -21,7 +21,7 @@ from waggle_tasks.experiments.pages import (
   run_page,
   suite_page,
 )
-from waggle_tasks.experiments.record import archive, encoding, traces
+from waggle_tasks.experiments.record import archive, traces
 
 Waggle = Callable[..., subprocess.CompletedProcess[str]]
 DATA = (
@@ -142,7 +142,7 @@ def test_the_head_tells_all_that_is_unlike_the_default(words: str) -> None:
 
 def test_a_run_of_the_defaults_changes_nothing(copied: pathlib.Path) -> None:
   config = json.loads((copied / 'config.json').read_text())
-  config['scenario'] = encoding.to_json(scenario.Scenario(observers=2))
+  config['scenario'] = plain.to_plain(scenario.Scenario(observers=2))
   (copied / 'config.json').write_text(json.dumps(config))
   page = run_page.write(copied).read_text(encoding='utf-8')
   assert 'Changed' not in str(Text(page))
@@ -296,7 +296,7 @@ def test_data_without_what_a_run_leaves_is_refused(
   copied: pathlib.Path, name: str
 ) -> None:
   (copied / name).write_text('{}')
-  with pytest.raises(archive.ArchiveError, match=r'no run left|is damaged in'):
+  with pytest.raises(archive.ArchiveError, match=r'is damaged|no run left'):
     run_page.write(copied)
 
 
@@ -346,25 +346,28 @@ def test_text_is_escaped_and_markup_is_not() -> None:
   assert whole == '<p class="x&quot;y" hidden>' + inner + '1.5</p>'
 
 
+OUTCOME = {'observer': 'observer_1', 'expected': None, 'failures': []}
 ROWS = [
   {
     'case': 'default', 'group': 'standard', 'label': 'Default', 'observers': 2,
     'expecting': 2, 'correct': 2, 'passed': True, 'receiver': 'klt',
-    'simulated_s': 100.0, 'published': {'correct': 2, 'passed': True},
-    'outcomes': [{'observer': 'observer_1', 'failures': []}],
+    'simulated_s': 100.0, 'identity': 'a', 'scenario': {},
+    'published': {'correct': 2, 'passed': True},
+    'outcomes': [OUTCOME],
   },
   {
     'case': 'span-40', 'group': 'standard', 'label': '<b>Span</b>',
     'observers': 2, 'expecting': 2, 'correct': 1, 'passed': False,
-    'receiver': 'klt', 'simulated_s': 100.0,
+    'receiver': 'klt', 'simulated_s': 100.0, 'identity': 'a', 'scenario': {},
     'published': {'correct': 1, 'passed': False},
-    'outcomes': [{'observer': 'observer_1', 'failures': ['RMSE 0.173']}],
+    'outcomes': [OUTCOME | {'failures': ['RMSE 0.173']}],
   },
   {
     'case': 'far', 'group': 'supplemental', 'label': 'Far', 'observers': 1,
     'expecting': 1, 'correct': 0, 'passed': False, 'receiver': 'klt',
-    'simulated_s': 100.0, 'published': {'correct': 1, 'passed': True},
-    'outcomes': [{'observer': 'observer_1', 'failures': ['support 2 < 5']}],
+    'simulated_s': 100.0, 'identity': 'a', 'scenario': {},
+    'published': {'correct': 1, 'passed': True},
+    'outcomes': [OUTCOME | {'failures': ['support 2 < 5']}],
   },
 ]  # fmt: skip
 

@@ -226,8 +226,9 @@ def test_an_unfinished_sweep_is_read_from_its_journal(
     (None, 'holds no results of a sweep'),
     ('', 'holds no results of a sweep'),
     ('{"case": ', 'cannot be read'),
-    ('3', 'must be results of a sweep'),
-    (json.dumps({'case': 'a', 'group': 'own'}), 'must be results of a sweep'),
+    ('3', 'line 1, is damaged: `row` must be a table of Row: got 3'),
+    (json.dumps({'case': 'a', 'group': 'own'}), 'does not know; .*`row.group`'),
+    (json.dumps({'case': 'a'}), 'is damaged: `row.cell` must be given'),
   ],
 )
 def test_what_holds_no_results_is_refused(
