@@ -47,6 +47,7 @@ CASES = {
   '--camera=fast': "`camera` must be one of ['incremental', 'full']",
   '--floor=grass': '`floor` must be one of',
   '--observer=3': 'unknown flag --observer. Did you mean --observers',
+  '--config=none/config.json': 'none is not a run folder: it has no',
   '--seed=-1': '`seed` must be between 0 and 4294967295: got -1',
   '--late_frames=26': '`late_frames` must be between 0 and 25: got 26',
   '--dropped_share=2': '`dropped_share` must be between 0 and 1: got 2.0',

@@ -161,7 +161,7 @@ def test_whatever_a_dataclass_may_hold_comes_back() -> None:
 def test_a_table_of_another_class_than_declared_is_refused() -> None:
   table = through_json(Tree(Colour.RED, 'a', Leaf()))
   table['one'] = {f'{__name__}:Tree': {}}
-  error = '`one` must be a Leaf or Twig: got .*:Tree'
+  error = '`one` must be a table of Leaf or a table of Twig: got .*:Tree'
   with pytest.raises(plain.PlainError, match=error):
     plain.from_plain(Tree, table)
 

@@ -160,12 +160,7 @@ def _read(kind: Any, plain: Any, name: str) -> Any:  # noqa: ANN401
   place = str(next(iter(plain))) if len(plain) == 1 else ''
   if dataclasses.is_dataclass(form) and ':' not in place:
     return _made(form, plain, name)
-  found = _found(place, plain, name)
-  closed = [each for each in several if each not in kinds.FORMS]
-  if all(map(dataclasses.is_dataclass, closed)):
-    if not any(issubclass(found, each) for each in closed):
-      words = ' or '.join(each.__name__ for each in closed)
-      raise PlainError(f'`{name}` must be a {words}: got {place}')
+  found = _found(place, several, plain, name)
   return _read(found, plain[place], name)
 
 
@@ -207,8 +202,13 @@ def _made(kind: Any, table: Mapping[str, Any], name: str) -> Any:  # noqa: ANN40
     return maker(**values)
 
 
-def _found(place: str, table: Mapping[str, Any], name: str) -> type:
-  """The dataclass that data name, from anywhere."""
+def _found(
+  place: str,
+  several: Sequence[Any],
+  table: Mapping[str, Any],
+  name: str,
+) -> type:
+  """The dataclass that data name, from anywhere, as far as it is declared."""
   module, _, path = place.partition(':')
   if not module or not path:
     raise PlainError(
@@ -229,7 +229,12 @@ def _found(place: str, table: Mapping[str, Any], name: str) -> type:
       f'`{name}` must be of a dataclass, else it cannot be made again: got'
       f' {place}'
     )
-  return found
+  closed = [each for each in several if each not in kinds.FORMS]
+  is_open = not all(map(dataclasses.is_dataclass, closed))
+  if is_open or any(issubclass(found, each) for each in closed):
+    return found
+  words = ' or '.join(map(kinds.word, closed))
+  raise PlainError(f'`{name}` must be {words}: got {place}')
 
 
 @contextlib.contextmanager

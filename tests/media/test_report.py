@@ -21,7 +21,7 @@ from waggle_tasks.experiments.pages import (
   run_page,
   suite_page,
 )
-from waggle_tasks.experiments.record import archive, traces
+from waggle_tasks.experiments.record import archive, encoding, traces
 
 Waggle = Callable[..., subprocess.CompletedProcess[str]]
 DATA = (
@@ -300,6 +300,83 @@ def test_data_without_what_a_run_leaves_is_refused(
     run_page.write(copied)
 
 
+def rewrite(path: pathlib.Path, **changes: object) -> None:
+  """Changes fields of a JSON file; those that are None are taken out."""
+  table = json.loads(path.read_text(encoding='utf-8')) | changes
+  kept = {name: each for name, each in table.items() if each is not None}
+  path.write_text(json.dumps(kept), encoding='utf-8')
+
+
+JSON = ('config.json', 'result.json', 'provenance.json')
+
+
+@pytest.mark.parametrize('name', JSON)
+def test_data_of_a_newer_program_are_refused_by_their_format(
+  copied: pathlib.Path, name: str
+) -> None:
+  rewrite(copied / name, format=encoding.FORMAT + 1, new={})
+  error = f'{name} must be 1 to 2 for this program: got 3, .* update waggle'
+  with pytest.raises(encoding.FormatError, match=error):
+    run_page.write(copied)
+
+
+@pytest.mark.parametrize('odd', ['2', 0, True, 1.5, [2]])
+def test_a_format_that_is_none_is_refused(
+  copied: pathlib.Path, odd: object
+) -> None:
+  rewrite(copied / 'config.json', format=odd)
+  with pytest.raises(encoding.FormatError, match='must be a number: got'):
+    archive.read_config(copied / 'config.json')
+
+
+def test_a_run_of_the_oldest_format_has_the_same_page(
+  copied: pathlib.Path, page: str
+) -> None:
+  for name in JSON:
+    rewrite(copied / name, format=None, agreement=None)
+  run_page.write(copied)
+  assert (copied / document.NAME).read_text(encoding='utf-8') == page
+
+
+def test_a_run_from_before_a_field_was_known_has_its_default(
+  copied: pathlib.Path,
+) -> None:
+  path = copied / 'config.json'
+  scene = json.loads(path.read_text(encoding='utf-8'))['scenario']
+  del scene['tolerance'], scene['drift'], scene['seed']
+  rewrite(path, scenario=scene, agreement=None, format=None)
+  run_page.write(copied)
+  made = archive.read_scenario(path)
+  assert (made.seed, made.drift) == (0, scenario.Scenario().drift)
+
+
+@pytest.mark.parametrize(
+  ('change', 'field'),
+  [({'mood': 1}, '`event.mood`'), ({'kind': 'echo'}, '`kind`')],
+)
+def test_an_event_that_is_not_known_is_of_a_newer_program_not_damaged(
+  copied: pathlib.Path, change: dict[str, object], field: str
+) -> None:
+  path = copied / 'events.jsonl'
+  first, *rest = path.read_text(encoding='utf-8').splitlines()
+  first = json.dumps(json.loads(first) | change)
+  path.write_text('\n'.join([first, *rest]), encoding='utf-8')
+  with pytest.raises(archive.ArchiveError, match=r'jsonl, line 1, ') as caught:
+    run_page.write(copied)
+  said = str(caught.value)
+  assert 'a newer one may have written it' in said
+  assert f'{field} must be one of' in said
+  assert 'damaged' not in said
+
+
+def test_the_scenario_of_a_run_is_made_again(recorded: object) -> None:
+  path = recorded.folder / 'config.json'
+  assert archive.read_scenario(path) == recorded.scene
+  config = archive.read_config(path)
+  assert config.agreement == recorded.scene.agreement
+  assert config.receiver == 'klt'
+
+
 def test_what_receivers_saw_comes_back_as_it_was(recorded: object) -> None:
   run = archive.load(recorded.folder)
   assert run.events == recorded.rollout.events
@@ -411,6 +488,15 @@ def test_damaged_results_are_refused(tmp_path: pathlib.Path, text: str) -> None:
   (tmp_path / 'results.jsonl').write_text(text)
   with pytest.raises(archive.ArchiveError, match=r'results\.jsonl'):
     suite_page.write(tmp_path)
+
+
+def test_results_of_a_newer_suite_are_refused(suite: pathlib.Path) -> None:
+  path = suite / 'results.jsonl'
+  text = json.dumps(ROWS[0] | {'format': 3, 'new': 1})
+  path.write_text(f'{path.read_text()}{text}\n')
+  error = r'results.jsonl, line 4, must be 1 to 2 for this program: got 3'
+  with pytest.raises(encoding.FormatError, match=error):
+    suite_page.write(suite)
 
 
 @pytest.mark.parametrize('arguments', [[], ['a', 'b']])
