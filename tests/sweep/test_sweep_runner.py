@@ -16,6 +16,7 @@ from waggle_tasks.experiments.record import (
   folders,
   journal,
   provenance,
+  scenario_fields,
 )
 from waggle_tasks.experiments.results import envelope, sweep_tables
 from waggle_tasks.experiments.studies import pool, sweep_results, sweep_runner
@@ -63,6 +64,7 @@ def test_a_sweep_leaves_its_results_and_no_run_folders(flown: object) -> None:
   for row, case in zip(rows, flown.cases, strict=True):
     assert row['cell'] == case.cell
     assert row['scenario'] == case.values
+    assert scenario_fields.make(row['scenario']) == case.scene
     assert row['receiver'] == 'view_bank'
     assert row['simulated_s'] == 1.0
     assert re.fullmatch('[0-9a-f]{64}', row['identity'])
