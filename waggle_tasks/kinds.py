@@ -13,8 +13,9 @@ import numpy as np
 
 from waggle_tasks.protocol import payload
 
+WORDS = types.NoneType, bool, int, float, str
 LISTS = tuple, list, set, frozenset, Sequence
-# Kinds that are written without a table: their data, and that in words.
+# What is written without a table: its data, and what they are called.
 FORMS: Mapping[object, tuple[type | tuple[type, ...], str]] = {
   types.NoneType: (types.NoneType, 'None'),
   bool: (bool, 'True or False'),
@@ -29,31 +30,30 @@ FORMS: Mapping[object, tuple[type | tuple[type, ...], str]] = {
 
 
 def takes(kind: Any, plain: object) -> bool:  # noqa: ANN401
-  """Whether data have the form of a kind."""
-  if len(several := members(kind)) > 1:
-    return any(takes(each, plain) for each in several)
+  """Whether data have the form of one of `members`."""
+  form = form_of(kind)
+  if form in FORMS:
+    if isinstance(plain, bool):
+      return form is bool
+    if isinstance(plain, float) and not math.isfinite(plain):
+      return False
+    return isinstance(plain, FORMS[form][0])
   if (listed := choices(kind)) is not None:
     return plain in listed
-  form = typing.get_origin(kind) or kind
-  if form in (Any, object):
-    return True
-  if form in (int, float) and isinstance(plain, bool):
-    return False
-  if isinstance(plain, float) and not math.isfinite(plain):
-    return False
-  return isinstance(plain, FORMS[form][0] if form in FORMS else Mapping)
+  return form in (Any, object) or isinstance(plain, Mapping)
 
 
 def word(kind: Any) -> str:  # noqa: ANN401
   """What a kind takes, for people."""
   if (listed := choices(kind)) is not None:
     return f'one of {listed}'
-  form = typing.get_origin(kind) or kind
+  form = form_of(kind)
   if form in FORMS:
     return FORMS[form][1]
   return f'a table of {getattr(form, "__name__", form)}'
 
 
+@functools.cache
 def choices(kind: Any) -> list[Any] | None:  # noqa: ANN401
   """The only data that a kind takes; None where there is no list of them."""
   if is_enum(kind):
@@ -62,11 +62,18 @@ def choices(kind: Any) -> list[Any] | None:  # noqa: ANN401
   return [*typing.get_args(kind)] if is_literal else None
 
 
+@functools.cache
+def form_of(kind: Any) -> Any:  # noqa: ANN401
+  """A kind without what it says of its parts."""
+  return typing.get_origin(kind) or kind
+
+
 def is_enum(kind: object) -> bool:
   """Whether a kind is an enumeration."""
   return isinstance(kind, type) and issubclass(kind, enum.Enum)
 
 
+@functools.cache
 def members(kind: Any) -> list[Any]:  # noqa: ANN401
   """The kinds that a value may have by its declaration."""
   is_union = typing.get_origin(kind) in (typing.Union, types.UnionType)
@@ -88,6 +95,8 @@ def inner(
     count: How many parts there are.
     strict: Whether another count of parts is returned as it is declared.
   """
+  if kind is Any:
+    return [Any] * count
   for each in members(kind):
     origin, args = typing.get_origin(each), [*typing.get_args(each)]
     if isinstance(origin, type) and args and issubclass(form, origin):

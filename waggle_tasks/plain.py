@@ -14,7 +14,6 @@ import functools
 import importlib
 import inspect
 import pathlib
-import typing
 from typing import Any, TypeVar
 
 import numpy as np
@@ -131,18 +130,18 @@ def fields(
 
 
 def _read(kind: Any, plain: Any, name: str) -> Any:  # noqa: ANN401
-  if not kinds.takes(kind, plain):
-    words = ' or '.join(map(kinds.word, kinds.members(kind)))
-    choices = [
-      each for one in kinds.members(kind) for each in kinds.choices(one) or ()
-    ]
-    hint = errors.did_you_mean(str(plain), [*map(str, choices)])
-    raise PlainError(
-      f'`{name or "value"}` must be {words}: got {plain!r}.{hint}'.rstrip('.')
-    )
+  if kind is Any:
+    return plain
   several = kinds.members(kind)
-  kind = next(each for each in several if kinds.takes(each, plain))
-  form = typing.get_origin(kind) or kind
+  for each in several:
+    if kinds.takes(each, plain):
+      kind = each
+      break
+  else:
+    raise _refused(several, plain, name)
+  form = kinds.form_of(kind)
+  if form in kinds.WORDS:
+    return plain
   if form in kinds.LISTS:
     return _read_list(kind, plain, name)
   if form is np.ndarray:
@@ -152,7 +151,7 @@ def _read(kind: Any, plain: Any, name: str) -> Any:  # noqa: ANN401
       return payload.Payload.from_bits(plain)
   if form is pathlib.Path or kinds.is_enum(form):
     return form(plain)
-  if not isinstance(plain, Mapping) or kind in (Any, object):
+  if not isinstance(plain, Mapping) or kind is object:
     return plain
   if isinstance(form, type) and issubclass(form, Mapping):
     inner = kinds.inner(kind, form, 2)[1]
@@ -164,8 +163,17 @@ def _read(kind: Any, plain: Any, name: str) -> Any:  # noqa: ANN401
   return _read(found, plain[place], name)
 
 
+def _refused(several: Sequence[Any], plain: object, name: str) -> PlainError:
+  words = ' or '.join(map(kinds.word, several))
+  choices = [each for kind in several for each in kinds.choices(kind) or ()]
+  hint = errors.did_you_mean(str(plain), [*map(str, choices)])
+  return PlainError(
+    f'`{name or "value"}` must be {words}: got {plain!r}.{hint}'
+  )
+
+
 def _read_list(kind: Any, plain: Sequence[Any], name: str) -> Any:  # noqa: ANN401
-  form = typing.get_origin(kind) or kind
+  form = kinds.form_of(kind)
   inner = kinds.inner(kind, form, len(plain), strict=True)
   if len(inner) != len(plain):
     raise PlainError(

@@ -19,9 +19,8 @@ from waggle_tasks.protocol.symbols import Symbol
 
 Values = Mapping[str, Any]
 
-# Groups that stand last, and numbers of them that have another name here.
+# Groups that stand last.
 _LAST = 'codebook', 'units'
-_NAMES = {'duration_s': 'gesture_s', 'heading_step_rad': 'heading_step_deg'}
 _WORDS = {'true': True, 'false': False}
 
 
@@ -76,9 +75,9 @@ def _values(
 ) -> Iterator[tuple[str, Field]]:
   """What a field of a scenario adds to the table."""
   owner: Callable[..., Any] = type(field.default)
-  part, names, renamed = field.name, None, _NAMES
+  part, names = field.name, None
   if not dataclasses.is_dataclass(field.default):
-    owner, part, names, renamed = kind, '', [field.name], {}
+    owner, part, names = kind, '', [field.name]
   elif owner is gestures.Codebook:
     owner = gestures.v_codebook
   texts, parameters = docs.sentences(owner), inspect.signature(owner).parameters
@@ -86,7 +85,9 @@ def _values(
     value = Field(
       owner.__name__, part, name, parameters[name].default, texts.get(name, '')
     )
-    flat = renamed.get(name, name) if part in _LAST else name
+    flat = name.replace('_rad', '_deg')
+    if owner is gestures.v_codebook and name == 'duration_s':
+      flat = 'gesture_s'  # The scenario has a duration of its own.
     yield flat, dataclasses.replace(value, default=value.told(value.default))
 
 
