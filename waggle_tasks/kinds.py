@@ -80,6 +80,12 @@ def members(kind: Any) -> list[Any]:  # noqa: ANN401
   return [*typing.get_args(kind)] if is_union else [kind]
 
 
+def classes(kind: Any) -> list[Any]:  # noqa: ANN401
+  """The members of a kind that are written as tables."""
+  forms = map(form_of, members(kind))
+  return [form for form in forms if form not in FORMS]
+
+
 def inner(
   kind: Any,  # noqa: ANN401
   form: type,

@@ -74,7 +74,7 @@ def _plain(value: Any, kind: Any) -> Any:  # noqa: ANN401
     field.name: _plain(getattr(value, field.name), hints.get(field.name, Any))
     for field in dataclasses.fields(value)
   }
-  said = [each for each in kinds.members(kind) if each not in kinds.FORMS]
+  said = kinds.classes(kind)
   return table if said in ([Any], [type(value)]) else {
     _place(type(value)): table
   }  # fmt: skip
@@ -132,13 +132,12 @@ def fields(
 def _read(kind: Any, plain: Any, name: str) -> Any:  # noqa: ANN401
   if kind is Any:
     return plain
-  several = kinds.members(kind)
-  for each in several:
-    if kinds.takes(each, plain):
-      kind = each
+  declared = kind
+  for kind in kinds.members(declared):
+    if kinds.takes(kind, plain):
       break
   else:
-    raise _refused(several, plain, name)
+    raise _refused(kinds.members(declared), plain, name)
   form = kinds.form_of(kind)
   if form in kinds.WORDS:
     return plain
@@ -159,7 +158,7 @@ def _read(kind: Any, plain: Any, name: str) -> Any:  # noqa: ANN401
   place = str(next(iter(plain))) if len(plain) == 1 else ''
   if dataclasses.is_dataclass(form) and ':' not in place:
     return _made(form, plain, name)
-  found = _found(place, several, plain, name)
+  found = _found(place, declared, plain, name)
   return _read(found, plain[place], name)
 
 
@@ -212,7 +211,7 @@ def _made(kind: Any, table: Mapping[str, Any], name: str) -> Any:  # noqa: ANN40
 
 def _found(
   place: str,
-  several: Sequence[Any],
+  kind: Any,  # noqa: ANN401
   table: Mapping[str, Any],
   name: str,
 ) -> type:
@@ -237,7 +236,7 @@ def _found(
       f'`{name}` must be of a dataclass, else it cannot be made again: got'
       f' {place}'
     )
-  closed = [each for each in several if each not in kinds.FORMS]
+  closed = kinds.classes(kind)
   is_open = not all(map(dataclasses.is_dataclass, closed))
   if is_open or any(issubclass(found, each) for each in closed):
     return found
