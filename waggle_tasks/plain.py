@@ -166,9 +166,8 @@ def _refused(several: Sequence[Any], plain: object, name: str) -> PlainError:
   words = ' or '.join(map(kinds.word, several))
   choices = [each for kind in several for each in kinds.choices(kind) or ()]
   hint = errors.did_you_mean(str(plain), [*map(str, choices)])
-  return PlainError(
-    f'`{name or "value"}` must be {words}: got {plain!r}.{hint}'
-  )
+  said = f'`{name or "value"}` must be {words}: got {plain!r}'
+  return PlainError(f'{said}.{hint}' if hint else said)
 
 
 def _read_list(kind: Any, plain: Sequence[Any], name: str) -> Any:  # noqa: ANN401
@@ -226,7 +225,7 @@ def _found(
     found: Any = importlib.import_module(module)
     for part in path.split('.'):
       found = getattr(found, part)
-  except Exception as error:  # It is code of anybody.
+  except (Exception, SystemExit) as error:  # It is code of anybody.
     raise PlainError(
       f'`{name}` must be of a class that can be imported: {place}:'
       f' {type(error).__name__}: {error}'

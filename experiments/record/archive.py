@@ -259,8 +259,8 @@ def read_events(
   events: dict[str, list[episode.Event]] = {name: [] for name in names}
   try:
     lines = path.read_text(encoding='utf-8').splitlines()
-  except OSError as error:
-    raise ArchiveError(f'{path} cannot be read: {error.strerror}') from None
+  except (OSError, ValueError) as error:
+    raise ArchiveError(f'{path} cannot be read: {error}') from None
   for number, line in enumerate(lines, 1):
     place = f'{path}, line {number},'
     try:
@@ -268,7 +268,7 @@ def read_events(
       own, kind = events[row.pop('observer')], row.pop('kind')
     except (ValueError, KeyError, TypeError, AttributeError) as error:
       raise ArchiveError(f'{place} is damaged: {error!r}') from None
-    if kind not in _EVENTS:
+    if not isinstance(kind, str) or kind not in _EVENTS:
       raise ArchiveError(
         f'{place} holds what this program does not know; a newer one may have'
         f' written it: `kind` must be one of {[*_EVENTS]}: got {kind!r}'

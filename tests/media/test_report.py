@@ -352,7 +352,11 @@ def test_a_run_from_before_a_field_was_known_has_its_default(
 
 @pytest.mark.parametrize(
   ('change', 'field'),
-  [({'mood': 1}, '`event.mood`'), ({'kind': 'echo'}, '`kind`')],
+  [
+    ({'mood': 1}, '`event.mood`'),
+    ({'kind': 'echo'}, '`kind`'),
+    ({'kind': []}, '`kind`'),
+  ],
 )
 def test_an_event_that_is_not_known_is_of_a_newer_program_not_damaged(
   copied: pathlib.Path, change: dict[str, object], field: str
