@@ -26,6 +26,7 @@ from waggle_tasks.experiments.flags import (
 from waggle_tasks.experiments.machine import table
 from waggle_tasks.experiments.pages import document, run_page
 from waggle_tasks.experiments.record import (
+  archive,
   episode,
   folders,
   nulls,
@@ -44,6 +45,10 @@ if TYPE_CHECKING:
 scenario_flags.define()
 recording_flags.define()
 _RECEIVER = receiver_flag.define()
+_CONFIG = flags.DEFINE_string(
+  'config', None, 'config.json of a run: its scenario and its receiver are'
+  ' flown again. Flags that are given beside it change what it says.',
+)  # fmt: skip
 _OUTPUT = flags.DEFINE_string(
   'output', None, 'Run folder to make; unset, the next runs/broadcast-N.'
 )
@@ -51,33 +56,43 @@ _OUTPUT = flags.DEFINE_string(
 
 def main(argv: Sequence[str]) -> int:
   """Runs the scenario of the flags and returns the exit status."""
-  scene = scenario_flags.read()
-  receivers.make(_RECEIVER.value, scene.agreement)
-  nulls.check([scene], _RECEIVER.value)
-  if note := reach.note([scene], _RECEIVER.value):
+  scene, receiver_name = _chosen()
+  receivers.make(receiver_name, scene.agreement)
+  nulls.check([scene], receiver_name)
+  if note := reach.note([scene], receiver_name):
     print(note, file=sys.stderr)
   # Imported here: help needs no simulator.
   from waggle_tasks.experiments.episodes import evaluator, outside
 
   command = provenance.command_line('broadcast', launch.given_flags())
   try:
-    foreign = outside.paths(_RECEIVER.value, [scene])
+    foreign = outside.paths(receiver_name, [scene])
   except source_files.UnknownSourceError as error:
     foreign = {}  # One flight stands for itself; it is only not told so well.
     print(f'provenance.json will not be complete: {error}', file=sys.stderr)
   with _folder() as (draft, folder):
     start = provenance.Start.now(command, foreign)
     with recording_flags.recorders(draft, scene) as watchers:
-      rollout = _roll(scene, _RECEIVER.value, watchers)
+      rollout = _roll(scene, receiver_name, watchers)
     verdict = evaluator.evaluate(scene, rollout)
     writer.write_run(
-      draft, scene, _RECEIVER.value, rollout, verdict,
+      draft, scene, receiver_name, rollout, verdict,
       start.end(rollout.renderer),
     )  # fmt: skip
   run_page.leave(folder)
   print(report(scene, verdict))
   print(f'Run folder: {folder}, report: {folder / document.NAME}')
   return 0 if verdict.passed else 1
+
+
+def _chosen() -> tuple[scenario.Scenario, str]:
+  """The scenario and the receiver of the flags, or of a run and the flags."""
+  if _CONFIG.value is None:
+    return scenario_flags.read(), _RECEIVER.value
+  path = pathlib.Path(_CONFIG.value)
+  known = archive.read_config(path).receiver
+  scene = scenario_flags.read(archive.read_scenario(path))
+  return scene, _RECEIVER.value if _RECEIVER.present else known
 
 
 @contextlib.contextmanager

@@ -87,8 +87,8 @@ def _folder(folder: pathlib.Path) -> int:
   ]  # fmt: skip
   if given:
     raise DecodeError(f'`{given[0].name}` is about a video: {folder} is none')
-  run = archive.read_json(folder / 'config.json')
-  agreement, own = archive.read_agreement(run), run['receiver']
+  config = archive.read_config(folder / 'config.json')
+  agreement, own = config.agreement, config.receiver
   names = list(dict.fromkeys(_RECEIVER.value or [own]))
   status = 0
   for path in capture.paths(folder):

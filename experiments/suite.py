@@ -16,12 +16,12 @@ import time
 
 from absl import flags
 
-from waggle_tasks import errors, suites
+from waggle_tasks import suites
 from waggle_tasks.agents import receivers
 from waggle_tasks.experiments import launch
 from waggle_tasks.experiments.flags import receiver_flag, workers_flag
 from waggle_tasks.experiments.pages import run_page, suite_page
-from waggle_tasks.experiments.record import nulls, provenance, reach
+from waggle_tasks.experiments.record import archive, nulls, provenance, reach
 from waggle_tasks.experiments.results import suite_tables
 from waggle_tasks.protocol import checks
 
@@ -41,10 +41,6 @@ _OUTPUT = flags.DEFINE_string(
 _COMPARE = flags.DEFINE_string(
   'compare', None, 'Result folder to set beside the folder B.'
 )
-
-
-class ResultError(errors.WaggleError):
-  """A result folder that cannot be read."""
 
 
 def main(argv: Sequence[str]) -> int:
@@ -117,23 +113,14 @@ def _compare(folders: Sequence[str]) -> int:
   if len(folders) != 2:
     raise flags.Error(f'--compare takes two folders: got {len(folders)}.')
   one, other = folders
-  print(suite_tables.compare(_rows(one), _rows(other), (one, other)))
-  return 0
-
-
-def _rows(folder: str) -> list[suite_tables.Row]:
-  """The rows of a finished suite."""
-  path = pathlib.Path(folder, 'results.jsonl')
   try:
-    lines = path.read_text(encoding='utf-8').splitlines()
-    rows = [json.loads(line) for line in lines]
-    for row in rows:
-      suite_tables.check(row)
-  except (OSError, ValueError) as error:
-    raise ResultError(
-      f'`compare` must name folders of finished suites: {path}: {error}'
+    a, b = (suite_page.read(pathlib.Path(folder)) for folder in folders)
+  except archive.ArchiveError as error:
+    raise suites.SuiteError(
+      f'`compare` must name folders of finished suites: {error}'
     ) from None
-  return rows
+  print(suite_tables.compare(a, b, (one, other)))
+  return 0
 
 
 if __name__ == '__main__':

@@ -172,16 +172,21 @@ def test_who_has_a_height_of_its_own_keeps_it() -> None:
 
 
 @pytest.mark.parametrize('new', [False, True])
-def test_a_run_is_read_by_what_both_sides_knew(new: bool) -> None:
+def test_a_run_is_read_by_what_both_sides_knew(
+  new: bool, tmp_path: pathlib.Path
+) -> None:
   scene = Scenario()
   if new:
     scene = Scenario(rate_hz=50, hover_height_m=2, camera_width_px=320)
-  config = json.loads(json.dumps(writer.config(scene, 'klt')))
+  config = writer.config(scene, 'klt')
   if not new:  # As runs were left before these could be chosen.
     for name in [*config['scenario']]:
       if name in ('rate_hz', 'hover_height_m') or name.startswith('camera_'):
         del config['scenario'][name]
-  assert archive.read_agreement(config) == scene.agreement
+    del config['agreement'], config['format']
+  path = tmp_path / 'config.json'
+  path.write_text(json.dumps(config), encoding='utf-8')
+  assert archive.read_config(path).agreement == scene.agreement
 
 
 @pytest.mark.parametrize(

@@ -10,7 +10,7 @@ import sys
 
 import pytest
 
-from waggle_tasks import scenario
+from waggle_tasks.experiments.record import scenario_fields
 
 # Runs many command lines in one process, each from fresh flags.
 DRIVER = """
@@ -47,6 +47,7 @@ CASES = {
   '--camera=fast': "`camera` must be one of ['incremental', 'full']",
   '--floor=grass': '`floor` must be one of',
   '--observer=3': 'unknown flag --observer. Did you mean --observers',
+  '--config=none/config.json': 'none is not a run folder: it has no',
   '--seed=-1': '`seed` must be between 0 and 4294967295: got -1',
   '--late_frames=26': '`late_frames` must be between 0 and 25: got 26',
   '--dropped_share=2': '`dropped_share` must be between 0 and 1: got 2.0',
@@ -141,9 +142,9 @@ def test_help_shows_a_flag_for_every_choice(waggle: Waggle) -> None:
   assert child.returncode == 0, child.stderr
   for name in ('receiver', 'output', *NUMBERS):
     assert f'--{name}=' in child.stdout
-  for name in scenario.Scenario.__dataclass_fields__:
-    if name not in scenario.PARTS:
-      assert f'--{name}=' in child.stdout
+  for name, default in scenario_fields.defaults().items():
+    flag = f'--[no]{name} ' if isinstance(default, bool) else f'--{name}='
+    assert flag in child.stdout
   assert '--observers=3 ' in child.stdout
   assert '--payload=000010 ' in child.stdout
   assert max(map(len, child.stdout.splitlines())) <= 80

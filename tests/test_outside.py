@@ -200,7 +200,7 @@ def test_a_layout_counts_with_its_source_its_numbers_and_its_poses(
   seen.add(identity('klt', scene(ROWS.replace('0.5 * s', '0.6 * s'))))
   assert len(seen) == 4
   held = json.loads(encoding.dumps(writer.config(plain, 'klt')))
-  assert held['scenario']['layout']['Rows']['radius_m'] == 1.3
+  assert held['scenario']['layout']['rows:Rows']['radius_m'] == 1.3
 
 
 def test_a_scenario_and_a_task_of_ones_own_count(

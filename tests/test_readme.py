@@ -2,13 +2,15 @@
 
 import contextlib
 import io
+import json
 import pathlib
 import re
 
 import pytest
 
+from waggle_tasks import scenario
 from waggle_tasks.experiments import main
-from waggle_tasks.experiments.record import nulls
+from waggle_tasks.experiments.record import nulls, writer
 from waggle_tasks.protocol import limits
 
 TEXT = (pathlib.Path(__file__).parents[1] / 'README.md').read_text('utf-8')
@@ -65,6 +67,16 @@ def test_everyone_in_a_layout_of_ones_own_reads(
   out = run(BLOCKS[2], namespace)
   assert out.count("'arrival'") == 5
   assert out.count('direction=0, heading=0, distance=2') == 5
+
+
+def test_the_scenario_of_a_run_is_made_again(
+  namespace: dict[str, object], tmp_path: pathlib.Path
+) -> None:
+  scene = scenario.Scenario(observers=2, seed=3)
+  config = json.dumps(writer.config(scene, 'klt'))
+  (tmp_path / 'config.json').write_text(config)
+  run(BLOCKS[3], namespace)
+  assert namespace['scene_of'](str(tmp_path)) == scene
 
 
 def test_the_numbers_are_those_of_the_code() -> None:

@@ -311,7 +311,8 @@ def test_a_configuration_holds_every_choice() -> None:
 def test_a_layout_of_ones_own_is_written_with_its_name() -> None:
   scene = scenario.Scenario(layout=layouts.Line(1.5, 0.7))
   held = writer.config(scene, 'klt')['scenario']['layout']
-  assert held == {'Line': {'separation_m': 1.5, 'spacing_m': 0.7}}
+  fields = {'separation_m': 1.5, 'spacing_m': 0.7}
+  assert held == {'waggle_tasks.arenas.layouts:Line': fields}
 
 
 def test_the_name_of_a_file_is_kept_until_it_is_written(

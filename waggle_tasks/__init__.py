@@ -20,6 +20,7 @@ if TYPE_CHECKING:
   from waggle_tasks.agents.observer_agent import Team
   from waggle_tasks.arenas import layouts
   from waggle_tasks.errors import WaggleError
+  from waggle_tasks.plain import from_plain, to_plain
   from waggle_tasks.protocol.agreement import Agreement
   from waggle_tasks.scenario import Scenario
 
@@ -29,9 +30,11 @@ __all__ = [
   'Team',
   'WaggleError',
   '__version__',
+  'from_plain',
   'layouts',
   'load',
   'receivers',
+  'to_plain',
 ]
 
 # Where names are that are imported when they are first asked for.
@@ -40,8 +43,10 @@ _HOMES = {
   'Scenario': 'scenario',
   'Team': 'agents.observer_agent',
   'WaggleError': 'errors',
+  'from_plain': 'plain',
   'layouts': 'arenas.layouts',
   'receivers': 'agents.receivers',
+  'to_plain': 'plain',
 }
 
 if _gl := runtime.default_gl(os.environ, sys.platform):

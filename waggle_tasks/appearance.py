@@ -19,10 +19,11 @@ class Appearance:
   """What is around the vehicles.
 
   Attributes:
-    floor: One of `FLOORS`; 'clutter' is full of corners and edges.
-    walls: One of `WALLS`, and of the ceiling.
-    sun: One of `SUNS`: a low sun, and vehicles' shadows on the floor, which
-      observers see too. A moving one takes a minute for its swing.
+    floor: The floor of the room, one of `FLOORS`; 'clutter' is full of corners
+      and edges.
+    walls: The walls and the ceiling of the room, one of `WALLS`.
+    sun: A low sun, one of `SUNS`; vehicles have shadows on the floor then,
+      which observers see too. A moving one takes a minute for its swing.
     brightness: Scales every light, 0.1 to 2; 1 is the room as designed.
     shadows: Whether the main light casts shadows in the shared views; the
       observers' own images never show those.

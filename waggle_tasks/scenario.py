@@ -1,9 +1,7 @@
 """A scenario: every choice of one episode, frozen and checked."""
 
-from collections.abc import Callable
 import dataclasses
 import math
-from typing import Any
 
 from waggle_tasks import appearance as appearance_lib
 from waggle_tasks import errors
@@ -29,17 +27,6 @@ INTERRUPTED_S = 60.0  # The same.
 MAX_OBSERVERS = 64
 _SIDE_PX = (64, 2048)  # Of an image.
 _CLEAR_M = 0.1  # From the highest point of a gesture to the ceiling.
-# Fields that are values of their own, and what makes one from plain numbers.
-PARTS: dict[str, Callable[..., Any]] = {
-  'codebook': gestures.v_codebook,
-  'pauses': timing.Timing,
-  'tolerance': clock.Tolerance,
-  'units': payload_lib.Units,
-  'appearance': appearance_lib.Appearance,
-  'surroundings': surroundings_lib.Surroundings,
-  'drift': drift_lib.Drift,
-  'sensor': sensor_lib.Sensor,
-}
 
 
 class ScenarioError(errors.WaggleError):
@@ -51,21 +38,26 @@ class Scenario:
   """One episode's configuration; the defaults are the paper's (Table 2).
 
   Attributes:
-    control: One of `CONTROLS`: 'none' for a nominal broadcast; with one of
-      `decoys.DECOYS` the performer flies what is no message.
+    control: What is sent, and to whom: 'none' is a nominal broadcast; from
+      'circles' on the performer flies what is no message. One of `CONTROLS`.
     observers: How many observers, 1 to 64.
-    layout: One of `LAYOUTS`, or a `layouts.Layout` of your own.
+    layout: Where observers stand: one of `LAYOUTS`, or in Python a
+      `layouts.Layout` of your own.
     distance_m: Radius of the arc, or distance of the line, 0.2 to 4 m.
-    half_span_deg: Angle from the middle of the arc to its end, 0 to 180.
+    half_span_deg: Angle from the middle of the arc to its end, 0 to 180
+      degrees.
     bearing_deg: Angle by which the middle of the arc is turned about the
-      performer, -180 to 180; one observer is there.
-    spacing_m: Distance between neighbours in a line; the paper gives none.
-    payload: Its bits, d|hhh|rr in the paper, as many as `units` say.
-    jitter_m: Bound of the initial x and y offset of every vehicle.
-    seed: Of the environment's random state.
-    black_observer: Which observer sees black images ('black_input').
-    stop_s: When transmission stops ('interrupted').
-    duration_s: How long the episode lasts at most; None for 10 s without
+      performer, -180 to 180 degrees; one observer is there.
+    spacing_m: Distance between neighbours in a line, in m; the paper gives
+      none.
+    payload: Its bits: one of direction, then as many of heading and of distance
+      as `units` say, three and two in the paper.
+    jitter_m: Bound of the initial x and y offset of every vehicle, in m.
+    seed: Seed of the environment: of all that is drawn.
+    black_observer: Which observer sees black images if `control` is
+      'black_input'.
+    stop_s: When transmission stops, in s, if `control` is 'interrupted'.
+    duration_s: How long the episode lasts at most, in s; unset, 10 s without
       sending, 60 s when interrupted, else 12 s after the dance.
     codebook: The agreed gestures.
     pauses: The agreed pauses.
@@ -79,11 +71,14 @@ class Scenario:
       whole number, 10 to 125.
     hover_height_m: Where everybody hovers and where a message leads to, 0.5 to
       5.5 m above the floor.
-    camera: One of `optics.CAMERAS`; both give the same picture.
-    camera_width_px: Width of the observers' images, 64 to 2048.
-    camera_height_px: Height of them, the same.
-    camera_fovy_deg: Their vertical field of view, 10 to 120 degrees.
-    eye_offset_m: How far an observer's eye is ahead of its centre of mass.
+    camera: How images are rendered, one of `optics.CAMERAS`; both give the same
+      picture.
+    camera_width_px: Width of the observers' images in pixels, 64 to 2048.
+    camera_height_px: Height of the observers' images in pixels, 64 to 2048.
+    camera_fovy_deg: Vertical field of view of the observers' images, 10 to 120
+      degrees.
+    eye_offset_m: How far an observer's eye is ahead of its centre of mass, in
+      m.
   """
 
   control: str = 'none'
@@ -117,8 +112,8 @@ class Scenario:
 
   def __post_init__(self) -> None:
     for field in dataclasses.fields(self):
-      value = getattr(self, field.name)
-      if field.name in PARTS and type(value) is not type(field.default):
+      value, usual = getattr(self, field.name), field.default
+      if dataclasses.is_dataclass(usual) and type(value) is not type(usual):
         raise ScenarioError(
           f'`{field.name}` must be a {type(field.default).__name__}:'
           f' got {value!r}'

@@ -43,25 +43,30 @@ class Sensor:
 
   Attributes:
     step_gain: Brightness from `step_s` on, 0.1 to 10; 1 is no step.
-    step_s: When brightness changes.
-    flicker_share: Amplitude of a sine of brightness about 1, 0 to 1, of a
-      phase that is drawn.
-    flicker_hz: Its frequency, 0 to 1000; images fold it, so that of 25 a second
-      25, 50 and 100 Hz are a constant.
+    step_s: When brightness changes by `step_gain`, in s.
+    flicker_share: Amplitude of flicker as a share of brightness, 0 to 1: a sine
+      of a phase that is drawn.
+    flicker_hz: Frequency of flicker, 0 to 1000 Hz; images fold it, so that of
+      25 a second 25, 50 and 100 Hz are a constant.
     exposure_s: How long an image is exposed, 0 to the time from one image to
-      the next. The motion between two images is blended from both: the share
-      of the preceding one is exposure_s over twice that time, a half at most.
+      the next, in s. The motion between two images is blended from both: the
+      share of the preceding one is exposure_s over twice that time, a half at
+      most.
     noise_sigma: Standard deviation of Gaussian noise in grey levels, 0 to
       128.
     photons: How many photons make full white, 10 to 1e6; 0 for no shot noise.
       Its variance is proportional to the level: 255 level / photons.
-    blackout_s: When the picture turns black.
-    blackout_length_s: For how long; 600 for the rest.
-    blackout_share: Share of its width that is black, from the left.
+    blackout_s: When the picture turns black, in s.
+    blackout_length_s: For how long the picture is black, in s; 0 for never, 600
+      for the rest.
+    blackout_share: Share of the width of the picture that turns black, from the
+      left.
     repeated_share: Probability that the last picture comes again, with a new
       time.
-    freeze_s: When the picture freezes: later ones repeat it, with new times.
-    freeze_length_s: For how long; 600 for the rest.
+    freeze_s: When the picture freezes, in s: later ones repeat it, with new
+      times.
+    freeze_length_s: For how long the picture is frozen, in s; 0 for never, 600
+      for the rest.
     late_frames: How many frames after its time an image comes, 0 to 25. As
       nothing came before it, the first one also stands for those in between.
     dropped_share: Probability that nothing comes in a frame: the observation

@@ -6,11 +6,10 @@ and supplemental suite'.
 
 from collections.abc import Mapping, Sequence
 import dataclasses
-import inspect
 import re
 from typing import Any
 
-from waggle_tasks import errors, scenarios
+from waggle_tasks import errors, plain, scenarios
 from waggle_tasks import scenario as scenario_lib
 from waggle_tasks.protocol import checks
 
@@ -166,7 +165,8 @@ def from_rows(rows: Sequence[Mapping[str, Any]]) -> tuple[Case, ...]:
     label = changes.pop('label', '')
     text = ', '.join(f'{key} = {value}' for key, value in changes.items())
     try:
-      scene = scenarios.find(task, **_parts(changes))
+      values = plain.fields(scenario_lib.Scenario, changes)
+      scene = scenarios.find(task, **values)
       cases.append(Case(name, group, label or text or task, scene))
     except errors.WaggleError as error:
       raise SuiteError(f'case {number} ({name}): {error}') from None
@@ -176,15 +176,3 @@ def from_rows(rows: Sequence[Mapping[str, Any]]) -> tuple[Case, ...]:
       f'`name` of each case must be its own, and one case the least: {names}'
     )
   return tuple(cases)
-
-
-def _parts(changes: Mapping[str, Any]) -> dict[str, Any]:
-  """Makes the values of their own that a row gives as tables of numbers."""
-  out = dict(changes)
-  for field, make in scenario_lib.PARTS.items():
-    if isinstance(fields := out.get(field), Mapping):
-      known = [*inspect.signature(make).parameters]
-      for name in fields:
-        checks.choice(f'{field} field', name, known, SuiteError)
-      out[field] = make(**fields)
-  return out

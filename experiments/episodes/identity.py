@@ -3,15 +3,10 @@
 import hashlib
 import json
 
-from waggle_tasks import scenario
+from waggle_tasks import plain, scenario
 from waggle_tasks.agents import receivers
 from waggle_tasks.experiments.episodes import outside
-from waggle_tasks.experiments.record import (
-  encoding,
-  provenance,
-  source_files,
-  writer,
-)
+from waggle_tasks.experiments.record import provenance, source_files, writer
 
 
 def of(scene: scenario.Scenario, receiver_name: str, source_digest: str) -> str:
@@ -39,5 +34,5 @@ def of(scene: scenario.Scenario, receiver_name: str, source_digest: str) -> str:
     'episode_s': scene.episode_s,
     'numbers': numbers,
   }
-  text = json.dumps(encoding.to_json(parts), sort_keys=True)
+  text = json.dumps(plain.to_plain(parts), sort_keys=True)
   return hashlib.sha256(text.encode()).hexdigest()

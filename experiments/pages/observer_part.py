@@ -1,7 +1,5 @@
 """What one observer saw and did, for the page of a run."""
 
-from collections.abc import Mapping
-
 from waggle_tasks.agents import description, outsiders, receivers
 from waggle_tasks.experiments.pages import (
   document,
@@ -10,15 +8,15 @@ from waggle_tasks.experiments.pages import (
   signals,
   timelines,
 )
-from waggle_tasks.experiments.record import archive
+from waggle_tasks.experiments.record import archive, verdicts
 from waggle_tasks.experiments.record import traces as traces_lib
 
 tag = markup.tag
 
 
-def draw(run: archive.Run, outcome: Mapping) -> markup.Markup:
+def draw(run: archive.Run, outcome: verdicts.Outcome) -> markup.Markup:
   """An observer's outcome, what it saw, and its motions."""
-  name = outcome['observer']
+  name = outcome.observer
   trace = run.traces.get(name)
   told = _told(run, trace)
   events = timelines.motions(run.events[name])
@@ -27,9 +25,7 @@ def draw(run: archive.Run, outcome: Mapping) -> markup.Markup:
     plots = tag('div', signals.draw(trace, run.end_s, told), class_='scroll')
   return tag(
     'section',
-    tag(
-      'h2', name, ' ', document.chip(not outcome['failures'], _word(outcome))
-    ),
+    tag('h2', name, ' ', document.chip(not outcome.failures, _word(outcome))),
     _outcome(outcome),
     plots,
     tag('h3', f'Motions of {name}'),
@@ -47,18 +43,20 @@ def _told(
   """The limits of the run's receiver, where it is on this machine."""
   width_px = None if trace is None else signals.width_px(trace)
   try:
-    return receivers.describe(run.config['receiver'], run.agreement, width_px)
+    return receivers.describe(
+      run.config.receiver, run.config.agreement, width_px
+    )
   except outsiders.MissingError:  # A page needs no more than the data.
     return description.Description()
 
 
-def _word(outcome: Mapping) -> str:
-  if outcome['failures']:
+def _word(outcome: verdicts.Outcome) -> str:
+  if outcome.failures:
     return 'failed'
-  return 'passed' if outcome['expected'] else 'waited, as it should'
+  return 'passed' if outcome.expected else 'waited, as it should'
 
 
-def _outcome(outcome: Mapping) -> markup.Markup:
+def _outcome(outcome: verdicts.Outcome) -> markup.Markup:
   columns = (
     ('sent', 'expected', 0, 1), ('decoded', 'decoded', 0, 1),
     ('END, s', 'end_s', 2, 1), ('final null, s', 'final_null_s', 2, 1),
@@ -67,7 +65,7 @@ def _outcome(outcome: Mapping) -> markup.Markup:
   )  # fmt: skip
   cells = []
   for _, field, digits, scale in columns:
-    value = outcome[field]
+    value = getattr(outcome, field)
     if isinstance(value, float):
       value = f'{value * scale:.{digits}f}'
     cells.append('\u2013' if value is None else value)

@@ -24,7 +24,7 @@ Moment = list[float]  # Time in s, then x, y and z in m.
 def ways(run: archive.Run) -> dict[str, list[Moment]]:
   """Where each vehicle was, to the millimetre, whenever that changed."""
   out: dict[str, list[Moment]] = {}
-  every = max(run.agreement.frames(_EVERY_S), 1)
+  every = max(run.config.agreement.frames(_EVERY_S), 1)
   for name, way_m in run.positions_m.items():
     moments: list[Moment] = []
     for frame in range(0, len(way_m), every):

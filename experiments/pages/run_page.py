@@ -3,7 +3,7 @@
 A static file beside the data that it shows; `write` makes it again from them.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 import math
 import pathlib
 import sys
@@ -18,7 +18,13 @@ from waggle_tasks.experiments.pages import (
   room,
   timelines,
 )
-from waggle_tasks.experiments.record import archive, changes, story
+from waggle_tasks.experiments.record import (
+  archive,
+  changes,
+  scenario_fields,
+  story,
+  verdicts,
+)
 from waggle_tasks.experiments.results import palette
 from waggle_tasks.protocol import payload
 
@@ -80,7 +86,7 @@ def videos(folder: pathlib.Path) -> list[str]:
 
 def draw(run: archive.Run, films: Sequence[str]) -> markup.Markup:
   """The page as text: equal data gives equal bytes."""
-  outcomes = run.result['outcomes']
+  outcomes = run.result.outcomes
   body = [
     _head(run),
     _failures(outcomes),
@@ -93,7 +99,7 @@ def draw(run: archive.Run, films: Sequence[str]) -> markup.Markup:
 
 
 def _title(run: archive.Run) -> str:
-  verdict = 'passed' if run.result['passed'] else 'FAILED'
+  verdict = 'passed' if run.result.passed else 'FAILED'
   return f'{run.scenario["payload"]}, {verdict} \u2013 waggle broadcast'
 
 
@@ -116,18 +122,18 @@ def _facts(run: archive.Run) -> dict[str, Any]:
 
 
 def _head(run: archive.Run) -> markup.Markup:
-  scene, passed = run.scenario, run.result['passed']
-  outcomes = run.result['outcomes']
-  expecting = sum(o['expected'] is not None for o in outcomes)
+  scene, passed = run.scenario, run.result.passed
+  outcomes = run.result.outcomes
+  expecting = sum(o.expected is not None for o in outcomes)
   if expecting:
-    words = f'{run.result["correct"]} of {expecting} decoded {scene["payload"]}'
+    words = f'{run.result.correct} of {expecting} decoded {scene["payload"]}'
   else:
     words = 'nothing was to be decoded'
   chips = []
   for each in outcomes:
-    words_ = [each['observer'], ' ', each['decoded'] or 'no message']
-    link = tag('a', *words_, href=f'#{each["observer"]}')
-    chips.append(document.chip(not each['failures'], link))
+    words_ = [each.observer, ' ', each.decoded or 'no message']
+    link = tag('a', *words_, href=f'#{each.observer}')
+    chips.append(document.chip(not each.failures, link))
   verdict = document.chip(passed, 'group passed' if passed else 'group FAILED')
   return tag(
     'header',
@@ -162,21 +168,21 @@ def describe(run: archive.Run) -> str:
   if layout == 'arc':
     where += f', half-span {scene["half_span_deg"]:g}\u00b0'
   elif not isinstance(layout, str):
-    where = ', '.join(layout)
+    where = scenario_fields.layout_name(layout)
   control = '' if scene['control'] == 'none' else f'{scene["control"]}; '
   return (
     f'{control}payload {bits.bits}: {way}, heading {turn_deg:g}\u00b0,'
     f' {reach_m:g} m; observers: {scene["observers"]}; {where}; jitter'
     f' {scene["jitter_m"]:g} m, seed {scene["seed"]}; receiver'
-    f' {run.config["receiver"]}; {run.end_s:.2f} s simulated'
+    f' {run.config.receiver}; {run.end_s:.2f} s simulated'
   )
 
 
-def _failures(outcomes: Sequence[Mapping]) -> markup.Markup | None:
+def _failures(outcomes: Sequence[verdicts.Outcome]) -> markup.Markup | None:
   lines = [
-    tag('li', tag('b', each['observer']), f': {failure}')
+    tag('li', tag('b', each.observer), f': {failure}')
     for each in outcomes
-    for failure in each['failures']
+    for failure in each.failures
   ]
   if not lines:
     return None

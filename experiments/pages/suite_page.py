@@ -5,14 +5,14 @@ Every line leads to the page of its run.
 
 from collections.abc import Mapping, Sequence
 import itertools
-import json
 import pathlib
 
 from waggle_tasks.experiments.pages import document, markup
 from waggle_tasks.experiments.record import archive
 from waggle_tasks.experiments.results import suite_tables
+from waggle_tasks.experiments.studies import suite_results
 
-RESULTS = 'results.jsonl'
+RESULTS = suite_results.RESULTS
 
 tag = markup.tag
 
@@ -31,15 +31,10 @@ def read(folder: pathlib.Path) -> list[dict]:
 
   Raises:
     ArchiveError: if there are none, or they are damaged.
+    FormatError: if a newer program wrote them.
   """
   path = folder / RESULTS
-  try:
-    lines = path.read_text(encoding='utf-8').splitlines()
-    rows = [json.loads(line) for line in lines]
-    for row in rows:
-      suite_tables.check(row)
-  except (OSError, ValueError) as error:
-    raise archive.ArchiveError(f'{path} cannot be read: {error}') from None
+  rows = archive.read_rows(path, suite_results.Row)
   if not rows:
     raise archive.ArchiveError(f'{path} holds no results')
   return rows

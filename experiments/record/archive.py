@@ -1,37 +1,62 @@
 """Reads run folders back: everything that a run has left behind."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Sequence
 import dataclasses
 import json
 import pathlib
-from typing import Any
+import typing
+from typing import Any, TypeVar
 import zipfile
 
 import numpy as np
 
-from waggle_tasks import errors
-from waggle_tasks.agents import observer_agent, receiver, recogniser
-from waggle_tasks.experiments.record import episode, story
+from waggle_tasks import errors, plain, scenario
+from waggle_tasks.experiments.record import encoding, episode, story, verdicts
 from waggle_tasks.experiments.record import traces as traces_lib
 from waggle_tasks.protocol import agreement as agreement_lib
-from waggle_tasks.protocol import (
-  camera,
-  clock,
-  controls,
-  frame,
-  gestures,
-  payload,
-  timing,
-)
-from waggle_tasks.protocol.symbols import Symbol
-from waggle_tasks.tasks import safety
+from waggle_tasks.protocol import controls, payload
 
 TRACES, POSITIONS = 'traces.npz', 'positions.npz'
 PAGE = 'index.html'  # Of any folder: made from the data beside it.
 
+_Value = TypeVar('_Value')
+
 
 class ArchiveError(errors.WaggleError):
   """A run folder that is not one, or whose files are damaged."""
+
+
+@dataclasses.dataclass(frozen=True)
+class Config:
+  """What was flown, as config.json has it.
+
+  Attributes:
+    receiver: How observers read.
+    scenario: The scenario as plain data: its layout may be of a class that
+      this machine does not have.
+    agreement: What both sides knew.
+  """
+
+  receiver: str
+  scenario: dict[str, Any]
+  agreement: agreement_lib.Agreement
+
+
+@dataclasses.dataclass(frozen=True)
+class Result:
+  """What came out, as result.json has it.
+
+  Attributes:
+    passed: Whether no check of any observer failed.
+    correct: How many observers read what was sent to them.
+    simulated_s: How long the episode was.
+    outcomes: One for each observer.
+  """
+
+  passed: bool
+  correct: int
+  simulated_s: float
+  outcomes: tuple[verdicts.Outcome, ...]
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -50,8 +75,8 @@ class Run:
   """
 
   folder: pathlib.Path
-  config: dict
-  result: dict
+  config: Config
+  result: Result
   provenance: dict
   events: dict[str, tuple[episode.Event, ...]]
   traces: dict[str, traces_lib.Trace]
@@ -61,12 +86,7 @@ class Run:
   @property
   def scenario(self) -> dict:
     """The fields of the scenario."""
-    return self.config['scenario']
-
-  @property
-  def agreement(self) -> agreement_lib.Agreement:
-    """What both sides knew."""
-    return read_agreement(self.config)
+    return self.config.scenario
 
   @property
   def sent(self) -> tuple[story.Sent, ...]:
@@ -75,7 +95,7 @@ class Run:
     bits = payload.Payload.from_bits(
       scene['payload'], payload.Units(**scene['units'])
     )
-    known = self.agreement
+    known = self.config.agreement
     performance = controls.perform(
       scene['control'], bits, scene['seed'], known.codebook, known.pauses,
       scene['stop_s'],
@@ -93,29 +113,31 @@ def load(folder: pathlib.Path) -> Run:
 
   Raises:
     ArchiveError: naming the file that is missing or damaged.
-    TraceError: the same, of the traces.
+    FormatError: if a newer program wrote it.
+    TraceError: as ArchiveError, of the traces.
   """
-  config = read_json(folder / 'config.json')
-  result = read_json(folder / 'result.json')
-  names = [each['observer'] for each in result['outcomes']]
+  config = read_config(folder / 'config.json')
+  result = read_result(folder / 'result.json')
+  names = [each.observer for each in result.outcomes]
   positions_m = _positions(folder / POSITIONS)
   return Run(
     folder,
     config,
     result,
     read_json(folder / 'provenance.json'),
-    read_events(folder / 'events.jsonl', names, read_agreement(config).units),
+    read_events(folder / 'events.jsonl', names),
     traces_lib.load(folder / TRACES),
     positions_m.pop('times_s'),
     positions_m,
   )
 
 
-def read_json(path: pathlib.Path) -> dict:
-  """Reads a JSON object.
+def read_json(path: pathlib.Path) -> dict[str, Any]:
+  """Reads a JSON object, without its format.
 
   Raises:
     ArchiveError: if there is none.
+    FormatError: if a newer program wrote it.
   """
   try:
     value = json.loads(path.read_text(encoding='utf-8'))
@@ -127,45 +149,103 @@ def read_json(path: pathlib.Path) -> dict:
     raise ArchiveError(f'{path} cannot be read: {error}') from None
   if not isinstance(value, dict):
     raise ArchiveError(f'{path} must hold a JSON object')
+  encoding.check_format(value, path)
+  value.pop('format', None)
   return value
 
 
-def read_agreement(config: Mapping) -> agreement_lib.Agreement:
-  """What both sides know, by a run's configuration."""
-  scene = config['scenario']
-  codebook = gestures.Codebook(
-    tuple(
-      gestures.Gesture(
-        Symbol(each['symbol']),
-        tuple(map(tuple, each['corners_m'])),
-        each['duration_s'],
-      )
-      for each in scene['codebook']['gestures']
-    )
-  )
-  pauses, units = (
-    timing.Timing(**scene['pauses']),
-    payload.Units(**scene['units']),
-  )
-  tolerance = clock.Tolerance(**scene['tolerance'])
-  # A run of before these could be chosen had what is the default now.
-  usual = agreement_lib.Agreement
-  seen = camera.Camera.of(
-    scene.get('camera_width_px', camera.Camera.columns),
-    scene.get('camera_height_px', camera.Camera.rows),
-    scene.get('camera_fovy_deg', camera.FOVY_DEG),
-  )
-  return agreement_lib.Agreement(
-    codebook, pauses, tolerance, units, seen,
-    scene.get('rate_hz', usual.rate_hz),
-    scene.get('hover_height_m', usual.hover_height_m),
-  )  # fmt: skip
+def read_rows(path: pathlib.Path, kind: type) -> list[dict[str, Any]]:
+  """Reads lines of results, as many as there are.
+
+  Raises:
+    ArchiveError: if there is no file, or a line is damaged.
+    FormatError: if a newer program wrote one.
+  """
+  try:
+    lines = path.read_text(encoding='utf-8').splitlines()
+    rows = [json.loads(line) for line in lines]
+  except (OSError, ValueError) as error:
+    raise ArchiveError(f'{path} cannot be read: {error}') from None
+  check_rows(rows, kind, path)
+  return rows
+
+
+def check_rows(rows: Sequence[Any], kind: type, path: pathlib.Path) -> None:
+  """Refuses rows that could not be those of a dataclass.
+
+  Raises:
+    ArchiveError: naming the line and what is wrong with it.
+    FormatError: if a newer program wrote one.
+  """
+  for number, row in enumerate(rows, 1):
+    place = f'{path}, line {number},'
+    if isinstance(row, dict):
+      encoding.check_format(row, place)
+    _made(kind, row, place, 'row')
+
+
+def read_config(path: pathlib.Path) -> Config:
+  """Reads what was flown in a run.
+
+  Args:
+    path: Its config.json.
+
+  Raises:
+    ArchiveError: if there is none, or it is damaged.
+    FormatError: if a newer program wrote it.
+  """
+  table = read_json(path)
+  scene = table.get('scenario')
+  if isinstance(scene, dict):  # An older program knew fewer fields.
+    table['scenario'] = {**plain.to_plain(scenario.Scenario()), **scene}
+  if 'agreement' not in table and isinstance(scene, dict):
+    # Of the oldest format: the scenario had all of it, by the same names.
+    names = [
+      field.name for field in dataclasses.fields(agreement_lib.Agreement)
+    ]
+    table['agreement'] = {
+      name: value for name, value in scene.items()
+      if name in names and isinstance(value, dict)
+    }  # fmt: skip
+  return _made(Config, table, path)
+
+
+def read_result(path: pathlib.Path) -> Result:
+  """Reads what came out of a run, its result.json; see `read_config`."""
+  return _made(Result, read_json(path), path)
+
+
+def read_scenario(path: pathlib.Path) -> scenario.Scenario:
+  """Reads the scenario of a run, to fly it again.
+
+  Args:
+    path: Its config.json.
+
+  Raises:
+    ArchiveError: if there is none, or it cannot be made here.
+    FormatError: if a newer program wrote it.
+  """
+  fields = read_config(path).scenario
+  return _made(scenario.Scenario, fields, path, 'scenario')
+
+
+def _made(
+  kind: type[_Value], table: object, place: object, name: str = ''
+) -> _Value:
+  """A value of plain data from a file."""
+  try:
+    return plain.from_plain(kind, table, name)
+  except plain.UnknownFieldError as error:
+    raise ArchiveError(
+      f'{place} holds what this program does not know; a newer one may have'
+      f' written it: {error}'
+    ) from None
+  except errors.WaggleError as error:
+    raise ArchiveError(f'{place} is damaged: {error}') from None
 
 
 def read_events(
-  path: pathlib.Path,
-  names: list[str],
-  units: payload.Units = payload.Units(),
+  path: pathlib.Path, names: Sequence[str]
 ) -> dict[str, tuple[episode.Event, ...]]:
   """Reads an event log.
 
@@ -180,46 +260,27 @@ def read_events(
   events: dict[str, list[episode.Event]] = {name: [] for name in names}
   try:
     lines = path.read_text(encoding='utf-8').splitlines()
-  except OSError as error:
-    raise ArchiveError(f'{path} cannot be read: {error.strerror}') from None
+  except (OSError, ValueError) as error:
+    raise ArchiveError(f'{path} cannot be read: {error}') from None
   for number, line in enumerate(lines, 1):
+    place = f'{path}, line {number},'
     try:
       row = json.loads(line)
-      make = _MAKERS[row.pop('kind')]
-      events[row.pop('observer')].append(make(row, units))
-    except (ValueError, KeyError, TypeError) as error:
+      own, kind = events[row.pop('observer')], row.pop('kind')
+    except (ValueError, KeyError, TypeError, AttributeError) as error:
+      raise ArchiveError(f'{place} is damaged: {error!r}') from None
+    if not isinstance(kind, str) or kind not in _EVENTS:
       raise ArchiveError(
-        f'{path} is damaged in line {number}: {error}'
-      ) from None
+        f'{place} holds what this program does not know; a newer one may have'
+        f' written it: `kind` must be one of {[*_EVENTS]}: got {kind!r}'
+      )
+    own.append(_made(_EVENTS[kind], row, place, kind))
   return {name: tuple(each) for name, each in events.items()}
 
 
-def _event(row: dict[str, Any], units: payload.Units) -> receiver.Event:
-  row['symbol'], row['state'] = Symbol(row['symbol']), frame.State(row['state'])
-  if row['message'] is not None:
-    row['message'] = payload.Payload.from_bits(row['message'], units)
-  if row['recognition'] is not None:
-    scores = dict(row['recognition'])
-    for field in ('symbol', 'best'):
-      scores[field] = Symbol(scores[field])
-    row['recognition'] = recogniser.Recognition(**scores)
-  return receiver.Event(**row)
-
-
-def _navigation(
-  row: dict[str, Any], units: payload.Units
-) -> observer_agent.Navigation:
-  row['deed'] = observer_agent.Deed(row['deed'])
-  row['target_m'] = tuple(row['target_m'])
-  row['payload'] = payload.Payload.from_bits(row['payload'], units)
-  return observer_agent.Navigation(**row)
-
-
 # By the `kind` of a line, see `writer.event_lines`.
-_MAKERS: dict[str, Callable[[dict[str, Any], payload.Units], episode.Event]] = {
-  'event': _event,
-  'navigation': _navigation,
-  'refusal': lambda row, _: safety.Refusal(**row),
+_EVENTS: dict[str, type[episode.Event]] = {
+  each.__name__.lower(): each for each in typing.get_args(episode.Event)
 }
 
 

@@ -31,7 +31,9 @@ if TYPE_CHECKING:
 
 FOLDER = 'raw'
 SUFFIX = '.capture'
-_MAGIC = b'waggle capture 1\n'
+_FORMAT = 1
+_NAME = b'waggle capture '
+_MAGIC = b'%b%d\n' % (_NAME, _FORMAT)
 _RECORD = struct.Struct('<dHHHHI')
 _CRC = struct.Struct('<I')
 _COLOURS = 3
@@ -138,8 +140,7 @@ def read(path: pathlib.Path) -> Iterator[tuple[np.ndarray, float]]:
 def _images(
   file: BinaryIO, path: pathlib.Path
 ) -> Iterator[tuple[np.ndarray, float]]:
-  if file.read(len(_MAGIC)) != _MAGIC:
-    raise CaptureError(f'{path} is not a capture: it begins otherwise')
+  _check(file.readline(len(_MAGIC) + _CRC.size), path)
   image: np.ndarray | None = None
   count, crc = 0, zlib.crc32(_MAGIC)
   while True:
@@ -174,6 +175,19 @@ def _blank(width: int, height: int) -> np.ndarray:
   if min(sides) < camera.MIN_SIDE_PX or max(sides) > camera.MAX_SIDE_PX:
     return np.zeros((0, 0, _COLOURS), np.uint8)
   return np.zeros((height, width, _COLOURS), np.uint8)
+
+
+def _check(magic: bytes, path: pathlib.Path) -> None:
+  """Refuses what is no capture, or one of another format."""
+  if magic == _MAGIC:
+    return
+  number = magic.removeprefix(_NAME).removesuffix(b'\n')
+  if magic.startswith(_NAME) and number.isdigit():
+    raise CaptureError(
+      f'`format` of {path} must be {_FORMAT} for this program: got'
+      f' {int(number)}, which a newer one wrote; update waggle-tasks to read it'
+    )
+  raise CaptureError(f'{path} is not a capture: it begins otherwise')
 
 
 def _window(data: bytes, shape: tuple[int, int, int]) -> np.ndarray | None:

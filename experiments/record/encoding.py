@@ -1,58 +1,49 @@
-"""Values of this project as JSON."""
+"""Results as JSON, and the version of the form that they have."""
 
 from collections.abc import Mapping
-import dataclasses
-import enum
 import json
-import pathlib
 from typing import Any
 
-import numpy as np
+from waggle_tasks import errors, plain
 
-from waggle_tasks.protocol import payload
+# Every object that is written says it; what says none is of format 1.
+FORMAT = 2
 
 
-def to_json(value: object) -> Any:  # noqa: ANN401
-  """Turns configurations, events and arrays into what JSON can hold."""
-  match value:
-    case payload.Payload():
-      return value.bits
-    case enum.Enum():
-      return str(value)
-    case np.ndarray() | np.generic():
-      return value.tolist()
-    case Mapping():
-      return {str(key): to_json(each) for key, each in value.items()}
-    case list() | tuple():
-      return [to_json(each) for each in value]
-    case None | str() | bool() | int() | float():
-      return value
-    case set() | frozenset():
-      return sorted((to_json(each) for each in value), key=repr)
-    case pathlib.PurePath():
-      return str(value)
-    case bytes():
-      return value.hex()
-    case type():
-      return value.__qualname__
-  if dataclasses.is_dataclass(value):
-    fields = {
-      field.name: to_json(getattr(value, field.name))
-      for field in dataclasses.fields(value)
-    }
-    return fields
-  # Of one's own, such as a layout that is a plain class.
-  return {
-    'type': getattr(value, '__qualname__', type(value).__qualname__),
-    **to_json(getattr(value, '__dict__', {})),
-  }
+class FormatError(errors.WaggleError):
+  """Results of a newer program than this one."""
 
 
 def dumps(value: object) -> str:
   """One line of JSON; NaN and infinity are refused."""
-  return json.dumps(to_json(value), allow_nan=False)
+  return json.dumps(plain.to_plain(value), allow_nan=False)
 
 
 def pretty(value: object) -> str:
   """A JSON file for people to read."""
-  return json.dumps(to_json(value), indent=2, allow_nan=False) + '\n'
+  return json.dumps(plain.to_plain(value), indent=2, allow_nan=False) + '\n'
+
+
+def stamped(value: object) -> dict[str, Any]:
+  """A dataclass or a table as plain data, beginning with its format."""
+  return {'format': FORMAT, **plain.to_plain(value)}
+
+
+def check_format(table: Mapping[str, Any], place: object) -> None:
+  """Refuses what this program does not know how to read.
+
+  Args:
+    table: Plain data; without `format` they are of the oldest.
+    place: Where they are from, for people.
+
+  Raises:
+    FormatError: naming the formats that it knows.
+  """
+  found = table.get('format', 1)
+  if isinstance(found, bool) or not isinstance(found, int) or found < 1:
+    raise FormatError(f'`format` of {place} must be a number: got {found!r}')
+  if found > FORMAT:
+    raise FormatError(
+      f'`format` of {place} must be 1 to {FORMAT} for this program: got'
+      f' {found}, which a newer one wrote; update waggle-tasks to read it'
+    )

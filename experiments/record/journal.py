@@ -70,12 +70,16 @@ def read(path: pathlib.Path) -> list[Any]:
 
   Raises:
     OSError: if there is a file that cannot be read.
+    FormatError: if a newer program wrote one.
   """
   if not path.exists():
     return []
   lines = path.read_bytes().split(b'\n')[:-1]  # What follows is torn.
   pairs = [line.partition(b' ') for line in lines]
-  return [json.loads(line) for said, _, line in pairs if said == _hash(line)]
+  rows = [json.loads(line) for said, _, line in pairs if said == _hash(line)]
+  for row in rows:
+    encoding.check_format(row, path)
+  return rows
 
 
 def _hash(line: bytes) -> bytes:

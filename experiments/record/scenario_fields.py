@@ -5,71 +5,182 @@ its groups under their own names, its codebook and units as the numbers that
 they are made from.
 """
 
-from collections.abc import Mapping
+from collections.abc import Callable, Iterator, Mapping
 import dataclasses
+import functools
 import inspect
 import math
 from typing import Any
 
-from waggle_tasks import scenario
-from waggle_tasks.protocol import checks, gestures, payload
+from waggle_tasks import plain, scenario
+from waggle_tasks.experiments.record import docs
+from waggle_tasks.protocol import checks, gestures
+from waggle_tasks.protocol.symbols import Symbol
 
 Values = Mapping[str, Any]
 
-# Those that are made from other numbers than their fields.
-_MADE = ('codebook', 'units')
-GROUPS = {
-  name: kind for name, kind in scenario.PARTS.items() if name not in _MADE
-}
+# Groups that stand last.
+_LAST = 'codebook', 'units'
 _WORDS = {'true': True, 'false': False}
+
+
+@dataclasses.dataclass(frozen=True)
+class Field:
+  """A value of the flat table.
+
+  Attributes:
+    owner: What takes it when a scenario is made.
+    part: The field of the scenario that it belongs to; empty for its own.
+    name: What its owner calls it.
+    default: What it is by default.
+    text: What the owner's docstring says of it.
+  """
+
+  owner: str
+  part: str
+  name: str
+  default: Any
+  text: str
+
+  def told(self, value: float) -> float:
+    """A number of the owner as the table has it."""
+    return math.degrees(value) if self.name.endswith('_rad') else value
+
+  def taken(self, value: float) -> float:
+    """A number of the table as the owner takes it."""
+    return math.radians(value) if self.name.endswith('_rad') else value
+
+
+@functools.cache
+def table(kind: type = scenario.Scenario) -> Mapping[str, Field]:
+  """Every value of a scenario by its flat name.
+
+  Raises:
+    ScenarioError: if two values have one name.
+  """
+  out: dict[str, Field] = {}
+  for field in sorted(dataclasses.fields(kind), key=lambda f: f.name in _LAST):
+    for name, value in _values(kind, field):
+      if name in out:
+        raise scenario.ScenarioError(
+          f'`{name}` must be the name of one value: {out[name].owner} and'
+          f' {value.owner} have it'
+        )
+      out[name] = value
+  return out
+
+
+def _values(
+  kind: type, field: dataclasses.Field
+) -> Iterator[tuple[str, Field]]:
+  """What a field of a scenario adds to the table."""
+  owner: Callable[..., Any] = type(field.default)
+  part, names = field.name, None
+  if not dataclasses.is_dataclass(field.default):
+    owner, part, names = kind, '', [field.name]
+  elif owner is gestures.Codebook:
+    owner = gestures.v_codebook
+  texts, parameters = docs.sentences(owner), inspect.signature(owner).parameters
+  for name in names or parameters:
+    value = Field(
+      owner.__name__, part, name, parameters[name].default, texts.get(name, '')
+    )
+    flat = name.replace('_rad', '_deg')
+    if owner is gestures.v_codebook and name == 'duration_s':
+      flat = 'gesture_s'  # The scenario has a duration of its own.
+    yield flat, dataclasses.replace(value, default=value.told(value.default))
 
 
 def defaults() -> dict[str, Any]:
   """Every flat name and its default, those of the dataclasses."""
-  out: dict[str, Any] = {}
-  for field in dataclasses.fields(scenario.Scenario):
-    if field.name in GROUPS:
-      out |= dataclasses.asdict(scenario.PARTS[field.name]())
-    elif field.name not in _MADE:
-      out[field.name] = field.default
-  signature = inspect.signature(gestures.v_codebook)
-  gesture = {n: p.default for n, p in signature.parameters.items()}
-  gesture['gesture_s'] = gesture.pop('duration_s')
-  units = payload.Units()
-  return {
-    **out,
-    **gesture,
-    'heading_step_deg': math.degrees(units.heading_step_rad),
-    'distance_unit_m': units.distance_unit_m,
-    'heading_bits': units.heading_bits,
-    'distance_bits': units.distance_bits,
-  }
+  return {name: field.default for name, field in table().items()}
 
 
 def make(values: Values) -> scenario.Scenario:
-  """The scenario of a whole table of values.
-
-  Args:
-    values: A value for each name of `defaults`.
+  """The scenario of some values; the others are the defaults.
 
   Raises:
-    WaggleError: if a value breaks a rule of the scenario.
+    WaggleError: see `changed`.
   """
-  rest = dict(values)
-  codebook = gestures.v_codebook(
-    rest.pop('half_width_m'), rest.pop('start_height_m'), rest.pop('gesture_s')
-  )
-  units = payload.Units(
-    math.radians(rest.pop('heading_step_deg')),
-    rest.pop('distance_unit_m'),
-    rest.pop('heading_bits'),
-    rest.pop('distance_bits'),
-  )
-  groups: dict[str, Any] = {}
-  for group, kind in GROUPS.items():
-    names = [*inspect.signature(kind).parameters]
-    groups[group] = kind(**{name: rest.pop(name) for name in names})
-  return scenario.Scenario(**rest, **groups, codebook=codebook, units=units)
+  return changed(scenario.Scenario(), values)
+
+
+def changed(scene: scenario.Scenario, values: Values) -> scenario.Scenario:
+  """A scenario with some of its values changed.
+
+  Args:
+    scene: The scenario.
+    values: By their flat names.
+
+  Raises:
+    WaggleError: if a name is not known, a value breaks a rule of the scenario,
+      or is a number of gestures where these are no Vs.
+  """
+  parts: dict[str, dict[str, Any]] = {}
+  for name, value in values.items():
+    checks.choice('field', name, [*table()], scenario.ScenarioError)
+    field = table()[name]
+    parts.setdefault(field.part, {})[field.name] = field.taken(value)
+  whole: dict[str, Any] = parts.pop('', {})
+  for part, numbers in parts.items():
+    now = getattr(scene, part)
+    if part == 'codebook':
+      sizes = _v_sizes(now)
+      if sizes is None:
+        first = next(name for name in values if table()[name].part == part)
+        raise scenario.ScenarioError(
+          f'`{first}` must not be given for gestures that are no Vs'
+        )
+      whole[part] = gestures.v_codebook(**{**sizes, **numbers})
+    else:
+      whole[part] = dataclasses.replace(now, **numbers)
+  return dataclasses.replace(scene, **whole)
+
+
+def flat(fields: Values) -> dict[str, Any]:
+  """The values of a scenario, of its fields as plain data have them.
+
+  A layout of one's own stands by the name of its class, and a codebook that is
+  none of Vs by 'own'.
+  """
+  names = {(f.part, f.name): (name, f) for name, f in table().items()}
+  out: dict[str, Any] = {}
+  for part, value in fields.items():
+    if part == 'codebook':
+      value = _v_sizes(plain.from_plain(gestures.Codebook, value))
+    if value is None and part == 'codebook':
+      out[part] = 'own'
+    elif part == 'layout':
+      out[part] = layout_name(value)
+    elif isinstance(value, Mapping):
+      for inner, number in value.items():
+        name, field = names.get((part, inner), (inner, None))
+        out[name] = field.told(number) if field else number
+    else:
+      out[part] = value
+  return out
+
+
+def layout_name(layout: str | Values) -> str:
+  """What a layout is called, which plain data may have by its class."""
+  if isinstance(layout, str):
+    return layout
+  return next(iter(layout), 'none').rpartition(':')[2]
+
+
+@functools.lru_cache
+def _v_sizes(codebook: gestures.Codebook) -> dict[str, float] | None:
+  """The numbers that make a codebook of Vs; None of another one."""
+  start, end = codebook[Symbol.START], codebook[Symbol.END]
+  sizes = {
+    'half_width_m': max(x for x, _ in end.corners_m),
+    'start_height_m': max(z for _, z in start.corners_m),
+    'duration_s': start.duration_s,
+  }
+  try:
+    return sizes if gestures.v_codebook(**sizes) == codebook else None
+  except gestures.CodebookError:
+    return None
 
 
 def parse(name: str, text: str) -> object:

@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterator
 import pathlib
 from typing import Any
 
-from waggle_tasks import scenario
+from waggle_tasks import plain, scenario
 from waggle_tasks.experiments.record import (
   archive,
   encoding,
@@ -19,10 +19,10 @@ Page = Callable[[pathlib.Path], object]  # Makes the page of a run folder.
 
 def config(scene: scenario.Scenario, receiver_name: str) -> dict[str, Any]:
   """A run's configuration: every field of its scenario, and its receiver."""
-  fields = encoding.to_json(scene)
-  if not isinstance(scene.layout, str):
-    fields['layout'] = {type(scene.layout).__name__: fields['layout']}
-  return {'receiver': receiver_name, 'scenario': fields}
+  fields = plain.to_plain(scene)
+  return encoding.stamped(
+    archive.Config(receiver_name, fields, scene.agreement)
+  )
 
 
 def event_lines(rollout: episode.Rollout) -> Iterator[str]:
@@ -41,7 +41,7 @@ def event_line(name: str, event: episode.Event) -> str:
   """An observer's event as a line of the event log."""
   kind = type(event).__name__.lower()
   return encoding.dumps(
-    {'observer': name, 'kind': kind, **encoding.to_json(event)}
+    {'observer': name, 'kind': kind, **plain.to_plain(event)}
   )
 
 
@@ -54,16 +54,15 @@ def write_run(
   origin: provenance.Provenance,
 ) -> None:
   """Writes the files of a run; all but provenance.json repeat bit for bit."""
-  result = {
-    'passed': verdict.passed,
-    'correct': verdict.correct,
-    'simulated_s': round(float(rollout.times_s[-1]), 3),
-  }
+  simulated_s = round(float(rollout.times_s[-1]), 3)
+  result = archive.Result(
+    verdict.passed, verdict.correct, simulated_s, verdict.outcomes
+  )
   texts = {
     'config.json': encoding.pretty(config(scene, receiver_name)),
     'events.jsonl': ''.join(f'{line}\n' for line in event_lines(rollout)),
-    'result.json': encoding.pretty({**result, 'outcomes': verdict.outcomes}),
-    'provenance.json': encoding.pretty(origin),
+    'result.json': encoding.pretty(encoding.stamped(result)),
+    'provenance.json': encoding.pretty(encoding.stamped(origin)),
   }
   for name, text in texts.items():
     (folder / name).write_text(text, encoding='utf-8')

@@ -21,18 +21,6 @@ class CompareError(errors.WaggleError):
   """Results that cannot be set side by side."""
 
 
-def check(row: object) -> None:
-  """Refuses what is no line of results.jsonl.
-
-  Raises:
-    CompareError: naming what is missing.
-  """
-  fields = ('case', 'group', 'label', 'observers', 'correct', 'passed')
-  for field in (*fields, 'outcomes'):
-    if not isinstance(row, dict) or field not in row:
-      raise CompareError(f'a result has no `{field}`: {str(row)[:60]}')
-
-
 def report(rows: Sequence[Row]) -> str:
   """Every table of a suite: its groups one by one, never pooled."""
   parts = []

@@ -10,6 +10,7 @@ from collections.abc import Callable
 import hashlib
 from typing import Any
 
+from waggle_tasks import plain
 from waggle_tasks.agents import receiver, receivers
 from waggle_tasks.experiments.episodes import evaluator
 from waggle_tasks.experiments.episodes import tape as tape_lib
@@ -64,7 +65,7 @@ def fly(
     'outcomes': outcomes,
     'scenario': case.values,
   }
-  return encoding.to_json(whole)
+  return encoding.stamped(whole)
 
 
 def _read(
@@ -87,7 +88,7 @@ def _exposure(
   said = outcome.decoded or 'nothing'
   failures = () if right else (f'decoding: read {said}; {spoiling.name}',)
   return {
-    **encoding.to_json(outcome),
+    **plain.to_plain(outcome),
     'failures': failures,
     'right': right,
     'wrong': outcome.wrong,

@@ -7,7 +7,7 @@ import pathlib
 import shutil
 from typing import Any
 
-from waggle_tasks import suites
+from waggle_tasks import plain, suites
 from waggle_tasks.experiments.episodes import evaluator, outside
 from waggle_tasks.experiments.episodes import rollout as rollout_lib
 from waggle_tasks.experiments.machine import files
@@ -17,7 +17,7 @@ from waggle_tasks.experiments.record import (
   provenance,
   writer,
 )
-from waggle_tasks.experiments.studies import job_progress
+from waggle_tasks.experiments.studies import job_progress, suite_results
 
 SEAL = 'seal.json'
 
@@ -100,24 +100,25 @@ def flaw(folder: pathlib.Path, identity_: str) -> str | None:
 def row(case: suites.Case, folder: pathlib.Path) -> dict[str, Any]:
   """A case's line of results.jsonl, from its sealed folder."""
   seal = json.loads((folder / SEAL).read_text(encoding='utf-8'))
-  result = json.loads((folder / 'result.json').read_text(encoding='utf-8'))
-  config = json.loads((folder / 'config.json').read_text(encoding='utf-8'))
-  expecting = sum(o['expected'] is not None for o in result['outcomes'])
-  return {
-    'case': case.name,
-    'group': case.group,
-    'label': case.label,
-    'identity': seal['identity'],
-    'receiver': config['receiver'],
-    'observers': case.scene.observers,
-    'expecting': expecting,
-    'correct': result['correct'],
-    'passed': result['passed'],
-    'simulated_s': result['simulated_s'],
-    'published': encoding.to_json(case.published),
-    'outcomes': result['outcomes'],
-    'scenario': config['scenario'],
-  }
+  config = archive.read_config(folder / 'config.json')
+  result = archive.read_result(folder / 'result.json')
+  whole = suite_results.Row(
+    format=encoding.FORMAT,
+    case=case.name,
+    group=case.group,
+    label=case.label,
+    identity=seal['identity'],
+    receiver=config.receiver,
+    observers=case.scene.observers,
+    expecting=sum(o.expected is not None for o in result.outcomes),
+    correct=result.correct,
+    passed=result.passed,
+    simulated_s=result.simulated_s,
+    published=case.published,
+    outcomes=result.outcomes,
+    scenario=config.scenario,
+  )
+  return plain.to_plain(whole)
 
 
 def _sha(path: pathlib.Path) -> str:

@@ -4,6 +4,7 @@ from collections.abc import Callable, Sequence
 import math
 from typing import Any
 
+from waggle_tasks import plain
 from waggle_tasks.agents import receiver
 from waggle_tasks.arenas import layouts
 from waggle_tasks.experiments.episodes import evaluator
@@ -60,7 +61,7 @@ def row(
     ],
     'scenario': case.values,
   }
-  return encoding.to_json(whole)
+  return encoding.stamped(whole)
 
 
 def head(case: sweep_cases.Case) -> dict[str, Any]:
@@ -72,7 +73,7 @@ def _exposure(outcome: verdicts.Outcome, pose: layouts.Pose) -> dict[str, Any]:
   """What became of one observer, and where it stood."""
   stages = [failure.partition(':')[0] for failure in outcome.failures]
   return {
-    **encoding.to_json(outcome),
+    **plain.to_plain(outcome),
     **place(pose),
     'right': outcome.decoded == outcome.expected,
     'wrong': outcome.wrong,

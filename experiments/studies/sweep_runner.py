@@ -109,7 +109,10 @@ def run(
     if jobs or not (folder / sweep_results.PROVENANCE).exists():
       renderers = ', '.join(sorted({row['renderer'] for row in rows}))
       origin = start.end(renderers)
-      files.replace(folder / sweep_results.PROVENANCE, encoding.pretty(origin))
+      files.replace(
+        folder / sweep_results.PROVENANCE,
+        encoding.pretty(encoding.stamped(origin)),
+      )
   return rows
 
 
@@ -142,6 +145,7 @@ def _csv(rows: Sequence[Mapping[str, Any]]) -> str:
   lines = []
   for row in rows:
     flat = {k: v for k, v in row.items() if not isinstance(v, (dict, list))}
+    del flat['format']
     for outcome in row['outcomes']:
       line = {**flat, **outcome, **row['scenario']}
       for field in ('failures', 'stages'):

@@ -212,3 +212,13 @@ def test_what_a_receiver_without_a_track_takes_is_captured(
       recorder(room, timestep, team)
   (path,) = capture.paths(tmp_path)
   assert [image[0, 0, 0] for image, _ in capture.read(path)] == [0, 1, 2]
+
+
+def test_a_capture_of_a_newer_program_says_so(
+  small: bytes, tmp_path: pathlib.Path
+) -> None:
+  path = tmp_path / 'x.capture'
+  path.write_bytes(small.replace(b'capture 1', b'capture 12', 1))
+  error = 'must be 1 for this program: got 12, .* update waggle-tasks'
+  with pytest.raises(capture.CaptureError, match=error):
+    next(capture.read(path))

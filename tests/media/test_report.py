@@ -13,7 +13,7 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 
-from waggle_tasks import scenario
+from waggle_tasks import plain, scenario
 from waggle_tasks.experiments.pages import (
   document,
   markup,
@@ -142,7 +142,7 @@ def test_the_head_tells_all_that_is_unlike_the_default(words: str) -> None:
 
 def test_a_run_of_the_defaults_changes_nothing(copied: pathlib.Path) -> None:
   config = json.loads((copied / 'config.json').read_text())
-  config['scenario'] = encoding.to_json(scenario.Scenario(observers=2))
+  config['scenario'] = plain.to_plain(scenario.Scenario(observers=2))
   (copied / 'config.json').write_text(json.dumps(config))
   page = run_page.write(copied).read_text(encoding='utf-8')
   assert 'Changed' not in str(Text(page))
@@ -296,7 +296,7 @@ def test_data_without_what_a_run_leaves_is_refused(
   copied: pathlib.Path, name: str
 ) -> None:
   (copied / name).write_text('{}')
-  with pytest.raises(archive.ArchiveError, match=r'no run left|is damaged in'):
+  with pytest.raises(archive.ArchiveError, match=r'is damaged|no run left'):
     run_page.write(copied)
 
 
@@ -316,6 +316,87 @@ def test_a_page_that_cannot_be_drawn_loses_no_run(
   (line,) = capsys.readouterr().err.splitlines()
   assert 'of a plot' in line
   assert 'its data are whole, and `waggle report FOLDER` makes the page' in line
+
+
+def rewrite(path: pathlib.Path, **changes: object) -> None:
+  """Changes fields of a JSON file; those that are None are taken out."""
+  table = json.loads(path.read_text(encoding='utf-8')) | changes
+  kept = {name: each for name, each in table.items() if each is not None}
+  path.write_text(json.dumps(kept), encoding='utf-8')
+
+
+JSON = ('config.json', 'result.json', 'provenance.json')
+
+
+@pytest.mark.parametrize('name', JSON)
+def test_data_of_a_newer_program_are_refused_by_their_format(
+  copied: pathlib.Path, name: str
+) -> None:
+  rewrite(copied / name, format=encoding.FORMAT + 1, new={})
+  error = f'{name} must be 1 to 2 for this program: got 3, .* update waggle'
+  with pytest.raises(encoding.FormatError, match=error):
+    run_page.write(copied)
+
+
+@pytest.mark.parametrize('odd', ['2', 0, True, 1.5, [2]])
+def test_a_format_that_is_none_is_refused(
+  copied: pathlib.Path, odd: object
+) -> None:
+  rewrite(copied / 'config.json', format=odd)
+  with pytest.raises(encoding.FormatError, match='must be a number: got'):
+    archive.read_config(copied / 'config.json')
+
+
+def test_a_run_of_the_oldest_format_has_the_same_page(
+  copied: pathlib.Path, page: str
+) -> None:
+  for name in JSON:
+    rewrite(copied / name, format=None, agreement=None)
+  run_page.write(copied)
+  assert (copied / document.NAME).read_text(encoding='utf-8') == page
+
+
+def test_a_run_from_before_a_field_was_known_has_its_default(
+  copied: pathlib.Path,
+) -> None:
+  path = copied / 'config.json'
+  scene = json.loads(path.read_text(encoding='utf-8'))['scenario']
+  del scene['tolerance'], scene['drift'], scene['seed']
+  rewrite(path, scenario=scene, agreement=None, format=None)
+  run_page.write(copied)
+  made = archive.read_scenario(path)
+  assert (made.seed, made.drift) == (0, scenario.Scenario().drift)
+
+
+@pytest.mark.parametrize(
+  ('change', 'field'),
+  [
+    ({'mood': 1}, '`event.mood`'),
+    ({'kind': 'echo'}, '`kind`'),
+    ({'kind': []}, '`kind`'),
+  ],
+)
+def test_an_event_that_is_not_known_is_of_a_newer_program_not_damaged(
+  copied: pathlib.Path, change: dict[str, object], field: str
+) -> None:
+  path = copied / 'events.jsonl'
+  first, *rest = path.read_text(encoding='utf-8').splitlines()
+  first = json.dumps(json.loads(first) | change)
+  path.write_text('\n'.join([first, *rest]), encoding='utf-8')
+  with pytest.raises(archive.ArchiveError, match=r'jsonl, line 1, ') as caught:
+    run_page.write(copied)
+  said = str(caught.value)
+  assert 'a newer one may have written it' in said
+  assert f'{field} must be one of' in said
+  assert 'damaged' not in said
+
+
+def test_the_scenario_of_a_run_is_made_again(recorded: object) -> None:
+  path = recorded.folder / 'config.json'
+  assert archive.read_scenario(path) == recorded.scene
+  config = archive.read_config(path)
+  assert config.agreement == recorded.scene.agreement
+  assert config.receiver == 'klt'
 
 
 def test_what_receivers_saw_comes_back_as_it_was(recorded: object) -> None:
@@ -364,25 +445,28 @@ def test_text_is_escaped_and_markup_is_not() -> None:
   assert whole == '<p class="x&quot;y" hidden>' + inner + '1.5</p>'
 
 
+OUTCOME = {'observer': 'observer_1', 'expected': None, 'failures': []}
 ROWS = [
   {
     'case': 'default', 'group': 'standard', 'label': 'Default', 'observers': 2,
     'expecting': 2, 'correct': 2, 'passed': True, 'receiver': 'klt',
-    'simulated_s': 100.0, 'published': {'correct': 2, 'passed': True},
-    'outcomes': [{'observer': 'observer_1', 'failures': []}],
+    'simulated_s': 100.0, 'identity': 'a', 'scenario': {},
+    'published': {'correct': 2, 'passed': True},
+    'outcomes': [OUTCOME],
   },
   {
     'case': 'span-40', 'group': 'standard', 'label': '<b>Span</b>',
     'observers': 2, 'expecting': 2, 'correct': 1, 'passed': False,
-    'receiver': 'klt', 'simulated_s': 100.0,
+    'receiver': 'klt', 'simulated_s': 100.0, 'identity': 'a', 'scenario': {},
     'published': {'correct': 1, 'passed': False},
-    'outcomes': [{'observer': 'observer_1', 'failures': ['RMSE 0.173']}],
+    'outcomes': [OUTCOME | {'failures': ['RMSE 0.173']}],
   },
   {
     'case': 'far', 'group': 'supplemental', 'label': 'Far', 'observers': 1,
     'expecting': 1, 'correct': 0, 'passed': False, 'receiver': 'klt',
-    'simulated_s': 100.0, 'published': {'correct': 1, 'passed': True},
-    'outcomes': [{'observer': 'observer_1', 'failures': ['support 2 < 5']}],
+    'simulated_s': 100.0, 'identity': 'a', 'scenario': {},
+    'published': {'correct': 1, 'passed': True},
+    'outcomes': [OUTCOME | {'failures': ['support 2 < 5']}],
   },
 ]  # fmt: skip
 
@@ -426,6 +510,15 @@ def test_damaged_results_are_refused(tmp_path: pathlib.Path, text: str) -> None:
   (tmp_path / 'results.jsonl').write_text(text)
   with pytest.raises(archive.ArchiveError, match=r'results\.jsonl'):
     suite_page.write(tmp_path)
+
+
+def test_results_of_a_newer_suite_are_refused(suite: pathlib.Path) -> None:
+  path = suite / 'results.jsonl'
+  text = json.dumps(ROWS[0] | {'format': 3, 'new': 1})
+  path.write_text(f'{path.read_text()}{text}\n')
+  error = r'results.jsonl, line 4, must be 1 to 2 for this program: got 3'
+  with pytest.raises(encoding.FormatError, match=error):
+    suite_page.write(suite)
 
 
 @pytest.mark.parametrize('arguments', [[], ['a', 'b']])

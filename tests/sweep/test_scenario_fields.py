@@ -15,24 +15,75 @@ def test_the_defaults_make_the_default_scenario() -> None:
   assert made == scenario.Scenario()
 
 
-def test_no_field_of_a_group_hides_another() -> None:
-  plain = [
-    field.name
-    for field in dataclasses.fields(scenario.Scenario)
-    if field.name not in scenario.PARTS
-  ]
-  grouped = [
-    field.name
-    for kind in scenario_fields.GROUPS.values()
-    for field in dataclasses.fields(kind)
-  ]
-  made = [
-    'half_width_m', 'start_height_m', 'gesture_s', 'heading_step_deg',
-    'distance_unit_m', 'heading_bits', 'distance_bits',
-  ]  # fmt: skip
-  names = [*plain, *grouped, *made]
-  assert len(set(names)) == len(names)
-  assert {*names} == {*scenario_fields.defaults()}
+def test_every_number_of_a_scenario_has_a_name_and_its_sentence() -> None:
+  names = {
+    (field.part, field.name): field.text
+    for field in scenario_fields.table().values()
+  }
+  assert all(text.endswith('.') and len(text) > 10 for text in names.values())
+  for field in dataclasses.fields(scenario.Scenario):
+    part, owner = field.name, type(field.default)
+    if owner is gestures.Codebook:
+      assert (part, 'half_width_m') in names
+    elif dataclasses.is_dataclass(owner):
+      assert {(part, f.name) for f in dataclasses.fields(owner)} <= {*names}
+    else:
+      assert ('', part) in names
+
+
+def test_a_sentence_lists_the_choices_that_its_docstring_names() -> None:
+  table = scenario_fields.table()
+  assert 'one of honeycomb, plain, clutter' in table['floor'].text
+  assert 'full' in table['camera'].text
+  assert all(each in table['control'].text for each in scenario.CONTROLS)
+
+
+def test_two_values_of_one_name_are_refused_naming_both_owners() -> None:
+  @dataclasses.dataclass(frozen=True)
+  class Gust:
+    """A group that has a name of the scenario's own."""
+
+    stop_s: float = 1.0
+
+  @dataclasses.dataclass(frozen=True)
+  class Rest:
+    """A group that has a name of another group."""
+
+    gap_s: float = 1.0
+
+  for name, group in (('stop_s', Gust()), ('gap_s', Rest())):
+    kind = dataclasses.make_dataclass(
+      'Windy', [('gust', type(group), group)], bases=(scenario.Scenario,),
+      frozen=True,
+    )  # fmt: skip
+    owner = type(group).__name__
+    error = f'`{name}` must be the name of one value: \\w+ and {owner} have it'
+    with pytest.raises(errors.WaggleError, match=error):
+      scenario_fields.table(kind)
+
+
+def test_a_value_that_is_changed_leaves_all_others() -> None:
+  scene = scenario_fields.make({'noise_sigma': 5.0, 'gap_s': 2.5, 'seed': 3})
+  made = scenario_fields.changed(scene, {'photons': 50.0, 'gesture_s': 8.0})
+  assert (made.sensor.noise_sigma, made.sensor.photons) == (5.0, 50.0)
+  assert (made.pauses.gap_s, made.seed) == (2.5, 3)
+  assert made.codebook == gestures.v_codebook(duration_s=8.0)
+
+
+def test_a_number_of_gestures_that_are_no_vs_is_refused() -> None:
+  usual = gestures.v_codebook().gestures
+  own = gestures.Codebook(
+    tuple(
+      dataclasses.replace(each, corners_m=((0, 0), (0.2, 0.1), (0, 0)))
+      if each.symbol == 'END'
+      else each
+      for each in usual
+    )
+  )
+  scene = scenario.Scenario(codebook=own)
+  error = '`gesture_s` must not be given for gestures that are no Vs'
+  with pytest.raises(errors.WaggleError, match=error):
+    scenario_fields.changed(scene, {'gesture_s': 8.0})
 
 
 @pytest.mark.parametrize(

@@ -9,12 +9,16 @@ import re
 
 import pytest
 
+from waggle_tasks import errors
 from waggle_tasks.experiments.record import (
   archive,
+  encoding,
   folders,
   journal,
   provenance,
+  scenario_fields,
 )
+from waggle_tasks.experiments.results import envelope, sweep_tables
 from waggle_tasks.experiments.studies import pool, sweep_results, sweep_runner
 
 Jobs = Sequence[pool.Job]
@@ -60,6 +64,7 @@ def test_a_sweep_leaves_its_results_and_no_run_folders(flown: object) -> None:
   for row, case in zip(rows, flown.cases, strict=True):
     assert row['cell'] == case.cell
     assert row['scenario'] == case.values
+    assert scenario_fields.make(row['scenario']) == case.scene
     assert row['receiver'] == 'view_bank'
     assert row['simulated_s'] == 1.0
     assert re.fullmatch('[0-9a-f]{64}', row['identity'])
@@ -226,8 +231,9 @@ def test_an_unfinished_sweep_is_read_from_its_journal(
     (None, 'holds no results of a sweep'),
     ('', 'holds no results of a sweep'),
     ('{"case": ', 'cannot be read'),
-    ('3', 'must be results of a sweep'),
-    (json.dumps({'case': 'a', 'group': 'own'}), 'must be results of a sweep'),
+    ('3', 'line 1, is damaged: `row` must be a table of Row: got 3'),
+    (json.dumps({'case': 'a', 'group': 'own'}), 'does not know; .*`row.group`'),
+    (json.dumps({'case': 'a'}), 'is damaged: `row.cell` must be given'),
   ],
 )
 def test_what_holds_no_results_is_refused(
@@ -237,3 +243,75 @@ def test_what_holds_no_results_is_refused(
     (tmp_path / 'results.jsonl').write_text(text)
   with pytest.raises(archive.ArchiveError, match=error):
     sweep_results.read(tmp_path)
+
+
+def old(row: dict[str, object]) -> dict[str, object]:
+  """A row as a program wrote it that knew less."""
+  scene = dict(row['scenario'])
+  del scene['clock_rate'], scene['late_frames']
+  kept = {name: each for name, each in row.items() if name != 'format'}
+  return kept | {'scenario': scene}
+
+
+def put(folder: pathlib.Path, rows: Sequence[object]) -> pathlib.Path:
+  folder.mkdir()
+  text = ''.join(f'{json.dumps(row)}\n' for row in rows)
+  (folder / 'results.jsonl').write_text(text)
+  return folder
+
+
+def test_an_old_sweep_and_a_new_one_make_one_map(
+  make: object, tmp_path: pathlib.Path
+) -> None:
+  rows = make.rows('distance_m=0.8,1.3')
+  before = put(tmp_path / 'old', [old(row) for row in rows])
+  after = make.rows('distance_m=0.8,1.3', clock_rate=0.1)
+  both = [
+    *sweep_results.read(before),
+    *sweep_results.read(put(tmp_path / 'new', after)),
+  ]
+  assert envelope.factors(both) == ['distance_m', 'clock_rate']
+  first = sweep_tables.report(both, None).splitlines()[0]
+  assert first.split() == ['distance_m', '\\', 'clock_rate', '0.02', '0.1']
+
+
+def test_a_scenario_that_is_not_known_is_refused_with_the_field(
+  make: object, tmp_path: pathlib.Path
+) -> None:
+  (row,) = make.rows()
+  row['scenario']['wind_mps'] = 3.0
+  error = 'does not know: a scenario with `wind_mps`'
+  with pytest.raises(archive.ArchiveError, match=error):
+    sweep_results.read(put(tmp_path / 'new', [row]))
+
+
+@pytest.mark.parametrize(
+  ('change', 'error'),
+  [
+    (
+      {'format': 3, 'wind': 1},
+      'line 1, must be 1 to 2 .* got 3',
+    ),
+    ({'wind': 1}, 'a newer one may have written it: `row.wind` must be one of'),
+    ({'outcomes': [{}]}, r'`row.outcomes\[0\].observer` must be given'),
+    ({'outcomes': 3}, '`row.outcomes` must be a list: got 3'),
+    ({'scenario': 3}, '`row.scenario` must be a table of dict: got 3'),
+  ],
+)
+def test_a_row_of_something_else_says_what_is_wrong(
+  make: object, tmp_path: pathlib.Path, change: object, error: str
+) -> None:
+  (row,) = make.rows()
+  with pytest.raises(errors.WaggleError, match=error):
+    sweep_results.read(put(tmp_path / 'new', [row | change]))
+
+
+def test_a_journal_of_a_newer_program_is_refused(
+  make: object, sweep: object
+) -> None:
+  sweep.folder.mkdir()
+  with journal.opened(sweep.journal) as log:
+    log.append(make.rows()[0] | {'format': 3})
+  error = 'journal.jsonl must be 1 to 2 for this program'
+  with pytest.raises(encoding.FormatError, match=error):
+    sweep.run()

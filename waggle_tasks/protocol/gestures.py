@@ -208,10 +208,10 @@ def v_codebook(
   92.64 s and 95.64 s (section 'Local faults and independent release').
 
   Args:
-    half_width_m: Half the width, and the height, of a V; half the width of
-      END.
-    start_height_m: How far START climbs.
-    duration_s: Seconds of each gesture.
+    half_width_m: Half the width, and the height, of a V, and half the width of
+      END, in m.
+    start_height_m: How far START climbs, in m.
+    duration_s: Time that each gesture takes, in s.
 
   Returns:
     The codebook.

@@ -22,10 +22,12 @@ class Units:
   The direction is one bit.
 
   Attributes:
-    heading_step_rad: alpha of equation 1, pi/4 rad in the paper.
-    distance_unit_m: u of equation 2, 0.2 m in the paper.
-    heading_bits: Bits of the heading, 3 in the paper, 1 to 12.
-    distance_bits: Bits of the distance, 2 in the paper, 1 to 12.
+    heading_step_rad: Angle of one heading count, alpha of equation 1; 45
+      degrees in the paper.
+    distance_unit_m: Length of one distance count, u of equation 2; 0.2 m in the
+      paper.
+    heading_bits: Bits of the payload's heading, 1 to 12; 3 in the paper.
+    distance_bits: Bits of the payload's distance, 1 to 12; 2 in the paper.
   """
 
   heading_step_rad: float = math.pi / 4
@@ -123,6 +125,29 @@ class Payload:
     """The bits as text, in the order in which they are flown."""
     heading = f'{self.heading:0{self.heading_bits}b}'
     return f'{self.direction}{heading}{self.distance:0{self.distance_bits}b}'
+
+  @property
+  def text(self) -> str:
+    """The same for files, with marks between fields of unusual widths."""
+    usual = Units()
+    widths = self.heading_bits, self.distance_bits
+    if widths == (usual.heading_bits, usual.distance_bits):
+      return self.bits
+    split = 1 + self.heading_bits
+    return f'{self.direction}|{self.bits[1:split]}|{self.bits[split:]}'
+
+  @classmethod
+  def from_text(cls, text: str) -> 'Payload':
+    """Reads `text`.
+
+    Raises:
+      PayloadError: if it is none.
+    """
+    if not isinstance(text, str) or text.count('|') != 2:
+      return cls.from_bits(text)
+    _, heading, distance = text.split('|')
+    widths = {'heading_bits': len(heading), 'distance_bits': len(distance)}
+    return cls.from_bits(text.replace('|', ''), Units(**widths))
 
   def __int__(self) -> int:
     return int(self.bits, 2)

@@ -20,10 +20,10 @@ class Timing:
   see that the motion has ended.
 
   Attributes:
-    initial_hover_s: Stillness before START.
-    settle_s: Stillness after each gesture.
-    gap_s: The explicit hover gap between gestures.
-    lead_in_s: Stillness before the next gesture.
+    initial_hover_s: Stillness before START, in s.
+    settle_s: Stillness after each gesture, in s.
+    gap_s: The explicit hover gap between gestures, in s.
+    lead_in_s: Stillness before the next gesture, in s.
   """
 
   initial_hover_s: float = 4.0

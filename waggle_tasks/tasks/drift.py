@@ -33,7 +33,8 @@ class Drift:
   Attributes:
     performer_drift_m: Root mean square of the performer's drift along each
       axis, 0 to 0.03 m.
-    observer_drift_m: The same of every observer, each with its own.
+    observer_drift_m: Root mean square of each observer's drift along each axis,
+      0 to 0.03 m.
     observer_yaw_drift_deg: Root mean square of each observer's drift in
       heading, 0 to 5 degrees.
     drift_time_s: Time in which a drift becomes another, 0.3 to 10 s; the

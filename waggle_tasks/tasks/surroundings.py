@@ -40,10 +40,10 @@ class Surroundings:
 
   Attributes:
     bystanders: How many other Crazyflies fly behind the performer, 0 to 4.
-    occluder_every_s: Mean time between two passes of a board, 5 to 600; 0 for
-      no board. The seed sets when it passes.
-    occluder_width_m: Width of the board, 0.02 to 1.
-    occluder_mps: Its speed, 0.1 to 2.
+    occluder_every_s: Mean time between two passes of a board before the
+      performer, 5 to 600 s; 0 for no board. The seed sets when it passes.
+    occluder_width_m: Width of the board, 0.02 to 1 m.
+    occluder_mps: Speed of the board, 0.1 to 2 m/s.
   """
 
   bystanders: int = 0
