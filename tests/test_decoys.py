@@ -69,7 +69,17 @@ def test_each_seed_is_another_performance(name: str) -> None:
   assert len({look(seed) for seed in SEEDS}) >= 6
 
 
-@pytest.mark.parametrize('name', FIGURES)
+@pytest.mark.parametrize(
+  'name',
+  [
+    'random_walk',
+    *(
+      pytest.param(name, marks=pytest.mark.slow)
+      for name in FIGURES
+      if name != 'random_walk'
+    ),
+  ],
+)
 def test_figures_are_smooth_and_can_be_flown(name: str) -> None:
   """Velocity and acceleration are slopes, within the vehicle's limits."""
   for seed in SEEDS:

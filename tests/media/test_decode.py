@@ -123,7 +123,12 @@ def test_the_command_notices_an_event_log_that_was_changed(
 
 
 @pytest.mark.parametrize(
-  ('name', 'codec'), [('x.webm', 'VP80'), ('x.mp4', 'mp4v'), ('x.mkv', 'FFV1')]
+  ('name', 'codec'),
+  [
+    ('x.webm', 'VP80'),
+    pytest.param('x.mp4', 'mp4v', marks=pytest.mark.slow),
+    pytest.param('x.mkv', 'FFV1', marks=pytest.mark.slow),
+  ],
 )
 def test_a_recording_in_any_container_reads_as_the_images_did(
   dance: Callable[..., pathlib.Path], name: str, codec: str
