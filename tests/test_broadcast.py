@@ -140,19 +140,19 @@ def test_the_run_folder_holds_everything_and_nothing_is_beside_it(
 def test_everybody_moved_by_the_message_and_not_before_its_own_null(
   flown: archive.Run,
 ) -> None:
-  for outcome in flown.result['outcomes']:
-    positions_m = flown.positions_m[outcome['observer']]
+  for outcome in flown.result.outcomes:
+    positions_m = flown.positions_m[outcome.observer]
     moved_m = positions_m - positions_m[0]
-    waiting = flown.times_s <= outcome['final_null_s']
+    waiting = flown.times_s <= outcome.final_null_s
     assert np.linalg.norm(moved_m[waiting], axis=1).max() < 1e-3
     np.testing.assert_allclose(moved_m[-1], (0.0, 0.4, 0.0), atol=0.015)
     np.testing.assert_allclose(positions_m[:, 2], 1.3, atol=1e-3)
 
 
 def test_who_arrived_keeps_its_place(flown: archive.Run) -> None:
-  for outcome in flown.result['outcomes']:
-    positions_m = flown.positions_m[outcome['observer']]
-    held = flown.times_s >= outcome['arrival_s']
+  for outcome in flown.result.outcomes:
+    positions_m = flown.positions_m[outcome.observer]
+    held = flown.times_s >= outcome.arrival_s
     assert np.count_nonzero(held) > 2.0 * 25
     apart_m = np.linalg.norm(positions_m[held] - positions_m[-1], axis=1)
     assert apart_m.max() < flight.ARRIVAL_ERROR_M

@@ -19,7 +19,8 @@ OTHERS = {
   'seed': 7, 'black_observer': 1, 'late_frames': 3, 'stop_s': 20.0,
   'occluder_mps': 1.5, 'step_gain': 2.0, 'half_span_deg': 20.0,
   'heading_step_deg': 30.0, 'flicker_hz': 3.0, 'photons': 100.0,
-  'occluder_every_s': 30.0,
+  'occluder_every_s': 30.0, 'rate_hz': 50.0, 'camera_width_px': 320,
+  'camera_height_px': 240, 'heading_bits': 4, 'distance_bits': 3,
 }  # fmt: skip
 
 
@@ -42,7 +43,11 @@ def test_the_default_scenario_changes_nothing() -> None:
 @pytest.mark.parametrize('name', scenario_fields.defaults())
 def test_every_field_that_is_changed_is_said(name: str) -> None:
   other = value(name)
-  extra = {'occluder_every_s': 20.0} if name.startswith('occluder') else {}
+  extra = {}
+  if name.startswith('occluder'):
+    extra = {'occluder_every_s': 20.0}
+  if name.endswith('_bits'):
+    extra = {'payload': '0000010'}
   said = changes.of(made(**{**extra, name: other}))
   assert any(each.startswith(f'{name}=') for each in said)
   assert len(said) == 1 + len(extra.keys() - {name})

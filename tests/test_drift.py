@@ -145,7 +145,8 @@ def test_a_drift_of_5_mm_is_no_motion_and_lets_flights_arrive(
     cameras=False, observers=2, seed=seed, drift=scene_drift, **short
   )
   task = environment.task
-  begin_s = task.performer.end_s + 3.0
+  scene = scenario.Scenario(observers=2, seed=seed, **short)
+  begin_s = scene.performance.end_s + 3.0
   agent = _Navigating(begin_s)
   positions, drifts, rewards = [], [], np.zeros(2)
   for timestep in episode(environment, agent):
@@ -163,7 +164,6 @@ def test_a_drift_of_5_mm_is_no_motion_and_lets_flights_arrive(
     '',
     drifts_m={n: np.stack([d[n] for d in drifts]) for n in drifts[0]},
   )
-  scene = scenario.Scenario(observers=2, seed=seed, **short)
   for name in ('observer_1', 'observer_2'):
     away_m = flown.positions_m[name] - flown.positions_m[name][0]
     assert np.linalg.norm(away_m, axis=1)[: AGREED.frames(begin_s)].max() > 0.01

@@ -34,7 +34,7 @@ def test_an_image_that_is_kept_does_not_change(
   np.testing.assert_array_equal(np.stack(kept), np.stack(copies))
 
 
-@pytest.mark.parametrize('choice', [{'buffer_size': 3}, {'delay': 2}])
+@pytest.mark.parametrize('choice', [{'buffer_size': 3}, {'delay': 20}])
 def test_images_that_composer_keeps_are_those_of_their_time(
   choice: dict[str, int], dancing: Load, film: Film
 ) -> None:

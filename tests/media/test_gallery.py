@@ -56,7 +56,7 @@ def test_each_gesture_shows_the_performer_all_along_its_track() -> None:
   assert [str(each.symbol) for each in sent] == ['START', '0', '1', 'END']
   images, times_s, centres_px = {}, [], []
   for gesture in sent:
-    for number, frame in enumerate(shots.exposures(gesture)):
+    for number, frame in enumerate(shots.exposures(gesture, scene.agreement)):
       image = np.full((480, 640, 3), 100, np.uint8)
       place = 200 + 12 * number, 200
       cv2.circle(image, place, 3, (255, 0, 0), -1)
@@ -67,7 +67,7 @@ def test_each_gesture_shows_the_performer_all_along_its_track() -> None:
   trace = traces.Trace(
     np.array(times_s), np.array(centres_px, float), rest, rest, rest, rest > -1
   )
-  picture = shots.gestures(sent, images, trace)
+  picture = shots.gestures(sent, images, trace, scene.agreement)
   red = (picture == (255, 0, 0)).all(axis=2).astype(np.uint8)
   count, _ = cv2.connectedComponents(red)
   assert count - 1 == len(images)

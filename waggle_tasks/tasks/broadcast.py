@@ -48,6 +48,7 @@ class Broadcast(copies.Uncopied, composer.Task):
       parts: What the task is made of.
     """
     self._parts = parts
+    self._steps = 1  # Composer's own interval between two values.
     self._observers = {o.mjcf_model.model: o for o in parts.observers}
     self._dancers = parts.dancers
     dancing = {name: each.vehicle for name, each in self._dancers.items()}
@@ -101,6 +102,13 @@ class Broadcast(copies.Uncopied, composer.Task):
       control_timestep, physics_timestep, self.agreement
     )
     super().set_timesteps(control_timestep, physics_timestep)
+    # Composer counts physics steps: one value for each frame, unless its user
+    # has asked for others.
+    usual, self._steps = self._steps, self.physics_steps_per_control_step
+    for visible in self.observables:
+      for each in visible.values():
+        if each.update_interval == usual:
+          each.update_interval = self._steps
 
   @composer.Task.control_timestep.setter
   def control_timestep(self, new_value: float) -> None:
