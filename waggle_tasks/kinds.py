@@ -22,7 +22,7 @@ FORMS: Mapping[object, tuple[type | tuple[type, ...], str]] = {
   int: (int, 'an integer'),
   float: ((int, float), 'a finite number'),
   str: (str, 'text'),
-  payload.Payload: (str, 'six bits'),
+  payload.Payload: (str, 'bits of a payload'),
   pathlib.Path: (str, 'a path'),
   np.ndarray: (list, 'an array of numbers'),
   **dict.fromkeys(LISTS, ((list, tuple), 'a list')),
