@@ -23,7 +23,7 @@ from waggle_tasks.protocol.symbols import MOTIONS, Symbol
 
 _LEG_POINTS = 40
 _NEAR_M = 0.05
-_MOTIONS = 8  # Of a message: START, six bits, END.
+_MOTIONS = 8  # The last ones tell the view; a message of six bits has 8.
 # How far, in its logarithm, a size may be from a view's, of which there are
 # five in twice the distance; and what a tracker may add to it.
 _SAME_SIZE, _SAME_SIZE_PX = 0.25, 2.0
