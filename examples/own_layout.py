@@ -30,7 +30,7 @@ class Steps:
 
 def main() -> None:
   """Flies a message before them."""
-  changes = {'observers': 3, 'layout': Steps(), **loop.FAST}
+  changes = {'observers': 2, 'layout': Steps(), **loop.FAST}
   loop.fly(waggle_tasks.load('broadcast', **changes))
 
 

@@ -7,7 +7,7 @@ import pytest
 
 FOLDER = pathlib.Path(__file__).parents[1] / 'examples'
 READ = {
-  'own_layout': ['000010'] * 3,
+  'own_layout': ['000010'] * 2,
   'small_fast_camera': ['000010'],
   'twelve_bits': ['000100010100'],
   'two_dancers': ['000010'],

@@ -52,6 +52,7 @@ def moved_m(tmp_path: pathlib.Path, case: str, observer: str) -> np.ndarray:
     return file[observer] - file[observer][0]
 
 
+@pytest.mark.slow
 def test_a_row_that_passes_and_one_that_fails_end_to_end(
   run: Run, tmp_path: pathlib.Path
 ) -> None:
