@@ -19,6 +19,7 @@ from waggle_tasks import scenario
 from waggle_tasks.agents import observer_agent, receivers
 from waggle_tasks.experiments import launch
 from waggle_tasks.experiments.flags import (
+  config_flag,
   receiver_flag,
   recording_flags,
   scenario_flags,
@@ -45,10 +46,10 @@ if TYPE_CHECKING:
 scenario_flags.define()
 recording_flags.define()
 _RECEIVER = receiver_flag.define()
-_CONFIG = flags.DEFINE_string(
-  'config', None, 'config.json of a run: its scenario and its receiver are'
-  ' flown again. Flags that are given beside it change what it says.',
-)  # fmt: skip
+_CONFIG = config_flag.define(
+  'its scenario and its receiver are flown again. Flags that are given beside'
+  ' it change what it says.'
+)
 _OUTPUT = flags.DEFINE_string(
   'output', None, 'Run folder to make; unset, the next runs/broadcast-N.'
 )
@@ -89,7 +90,7 @@ def _chosen() -> tuple[scenario.Scenario, str]:
   """The scenario and the receiver of the flags, or of a run and the flags."""
   if _CONFIG.value is None:
     return scenario_flags.read(), _RECEIVER.value
-  path = pathlib.Path(_CONFIG.value)
+  path = config_flag.path(_CONFIG.value)
   known = archive.read_config(path).receiver
   scene = scenario_flags.read(archive.read_scenario(path))
   return scene, _RECEIVER.value if _RECEIVER.present else known

@@ -12,6 +12,7 @@ it. Exit status 1 when no message is found, 2 on bad input.
 
 from collections.abc import Sequence
 import contextlib
+import dataclasses
 import math
 import pathlib
 import sys
@@ -22,7 +23,7 @@ from absl import flags
 from waggle_tasks import errors
 from waggle_tasks.agents import receivers
 from waggle_tasks.experiments import launch
-from waggle_tasks.experiments.flags import receiver_flag
+from waggle_tasks.experiments.flags import config_flag, receiver_flag
 from waggle_tasks.experiments.record import archive, capture, folders, reader
 from waggle_tasks.experiments.video import annotated, picture_folder, recordings
 from waggle_tasks.protocol import agreement as agreement_lib
@@ -59,6 +60,10 @@ _FOVY_DEG = flags.DEFINE_float(
   'Vertical field of view of the whole picture, in degrees. Unset, and without'
   f' --focal_px, {camera.FOVY_DEG:g}.',
 )
+_CONFIG = config_flag.define(
+  'the dance is in the language that was agreed on there. Unset, in that of the'
+  ' paper.'
+)
 _ANNOTATE = flags.DEFINE_string(
   'annotate', None, 'Video to write that shows what the receiver saw.'
 )
@@ -82,7 +87,7 @@ def _folder(folder: pathlib.Path) -> int:
   """Replays every capture of a run."""
   given = [
     flag for flag in (_ROI, _ANCHOR, _START, _END, _SPEED, _FPS, _FOCAL_PX,
-                      _FOVY_DEG, _ANNOTATE)
+                      _FOVY_DEG, _CONFIG, _ANNOTATE)
     if flag.present
   ]  # fmt: skip
   if given:
@@ -118,7 +123,7 @@ def _video(path: pathlib.Path) -> int:
     recording = stack.enter_context(recordings.Recording(path, _FPS.value))
     focal_px = _focal_px(recording.height)
     seen = camera.Camera(recording.width, recording.height, focal_px)
-    agreed = agreement_lib.Agreement(camera=seen)
+    agreed = dataclasses.replace(_language(), camera=seen)
     readers = [reader.Reader(name, agreed) for name in names]
     film = None
     if _ANNOTATE.value is not None:
@@ -150,6 +155,13 @@ def _video(path: pathlib.Path) -> int:
   if film and film.problem:
     raise DecodeError(film.problem)  # Last: what was read is not lost.
   return 0 if all(each.message for each in readers) else 1
+
+
+def _language() -> agreement_lib.Agreement:
+  """What the dancer and its audience knew."""
+  if _CONFIG.value is None:
+    return agreement_lib.Agreement()
+  return archive.read_config(config_flag.path(_CONFIG.value)).agreement
 
 
 def _numbers(

@@ -78,3 +78,10 @@ def test_a_scenario_that_cannot_be_made_is_told_with_its_field(
   error = r"`scenario\.layout` must be a table .*'package\.module:Class'"
   with pytest.raises(archive.ArchiveError, match=error):
     archive.read_scenario(config)
+
+
+def test_a_config_that_is_not_there_is_named(waggle: Waggle) -> None:
+  child = waggle('broadcast', '--config=nothing.json')
+  assert child.returncode == 2
+  error = '`config` must be the config.json of a run: nothing.json is no file'
+  assert child.stderr == f'waggle broadcast: {error}\n'

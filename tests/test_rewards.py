@@ -1,6 +1,7 @@
 """What an episode earns, when it ends, and what the controls show."""
 
 from collections.abc import Callable
+import dataclasses
 
 from dm_control import composer, mjcf
 import numpy as np
@@ -135,6 +136,22 @@ def test_a_graze_of_milliseconds_within_a_step_counts(
   assert len(substeps) == 10  # Each physics step of the control step.
   assert timestep.discount == 0
   assert environment.task.contacts == (('observer_1', 'room'),)
+
+
+@pytest.mark.parametrize(
+  ('name', 'error'),
+  [
+    ('performer', 'must have its own name: two are performer'),
+    ('dancer', '`poses` must hold one of every vehicle: there is none of'),
+  ],
+)
+def test_a_second_dancer_needs_a_name_and_a_place(
+  name: str, error: str
+) -> None:
+  made = registry.parts(registry.find('no_send', observers=1))
+  dancer = parts.Dancer(performer.Performer(name), made.performance)
+  with pytest.raises(parts.PartsError, match=error):
+    dataclasses.replace(made, others=(dancer,))
 
 
 def test_two_vehicles_that_touch_are_named(

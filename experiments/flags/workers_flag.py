@@ -13,14 +13,10 @@ flags.disclaim_key_flags()
 _MOST = 1024
 
 
-def define(what: str = 'processes') -> flags.FlagHolder[int | None]:
-  """Defines the flag for the launcher that calls this.
-
-  Args:
-    what: What works, in its help.
-  """
+def define() -> flags.FlagHolder[int | None]:
+  """Defines the flag for the launcher that calls this."""
   return flags.DEFINE_integer(
-    'workers', None, f'How many {what}; unset, one for each core.'
+    'workers', None, 'How many processes; unset, one for each core.'
   )
 
 

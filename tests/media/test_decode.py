@@ -122,6 +122,20 @@ def test_the_command_notices_an_event_log_that_was_changed(
   assert '16 of 17 events are the same, 17 now' in child.stdout
 
 
+def test_a_recording_is_read_in_the_language_of_a_run(
+  recorded: object, video: Callable[..., pathlib.Path], waggle: Waggle
+) -> None:
+  """The dance is a short one, which is none in the paper's language."""
+  path = recorded.folder / 'raw' / 'observer_1.capture'
+  images = [image.copy() for image, _ in capture.read(path)]
+  film = str(video(images, 'x.mp4', 'mp4v', 25.0))
+  asked = f'--config={recorded.folder / "config.json"}'
+  child = waggle('decode', film, asked)
+  assert child.returncode == 0, child.stderr
+  assert 'klt: message 000010' in child.stdout
+  assert 'klt: no message' in waggle('decode', film).stdout
+
+
 @pytest.mark.parametrize(
   ('name', 'codec'),
   [

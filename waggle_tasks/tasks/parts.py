@@ -3,12 +3,17 @@
 from collections.abc import Mapping
 import dataclasses
 
+from waggle_tasks import errors
 from waggle_tasks.arenas import flight_room, layouts
 from waggle_tasks.entities import observer, performer
 from waggle_tasks.protocol import agreement as agreement_lib
 from waggle_tasks.protocol import performance as performance_lib
 from waggle_tasks.tasks import drift as drift_lib
 from waggle_tasks.tasks import safety
+
+
+class PartsError(errors.WaggleError):
+  """Vehicles that cannot be told apart, or have no place."""
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -53,6 +58,19 @@ class Parts:
   minimum_spacing_m: float = safety.MINIMUM_SPACING_M
   drift: drift_lib.Drift = drift_lib.Drift()
   others: tuple[Dancer, ...] = ()
+
+  def __post_init__(self) -> None:
+    vehicles = [self.performer, *self.observers]
+    vehicles += [each.vehicle for each in self.others]
+    names = [each.mjcf_model.model for each in vehicles]
+    for name in names:
+      if names.count(name) > 1:
+        raise PartsError(f'each vehicle must have its own name: two are {name}')
+      if name not in self.poses:
+        raise PartsError(
+          f'`poses` must hold one of every vehicle: there is none of {name},'
+          f' only of {[*self.poses]}'
+        )
 
   @property
   def dancers(self) -> dict[str, Dancer]:
