@@ -1,10 +1,10 @@
 """Undoes what happens to a whole picture: a camera that sways, or light.
 
 A background is learned once; a picture in which everything has moved a little,
-or become brighter, is brought back to it. Four numbers say how: a shift along
-x and y, a gain and an offset, found by least squares (Lucas and Kanade 1981,
-with gain and offset) at the reference's edges, but for those that do not fit,
-which is where something moves.
+or become brighter, is brought back to it. A few numbers say how: how its camera
+has turned, see `turns`, a gain and an offset, found by least squares (Lucas and
+Kanade 1981, with gain and offset) at the reference's edges, but for those that
+do not fit, which is where something moves.
 """
 
 import dataclasses
@@ -12,7 +12,7 @@ import dataclasses
 import cv2
 import numpy as np
 
-from waggle_tasks.agents import bands, difference
+from waggle_tasks.agents import bands, difference, turns
 
 _STEEP = 2.0  # Edges are of so many grey levels per pixel...
 _USUAL = 8.0  # ...and so many times the usual.
@@ -28,7 +28,6 @@ _STILL_PX, _STILL_LEVELS = 0.1, 1.0  # Less is left alone...
 # ...and what so many median deviations do; a wrong guess costs time alone.
 _DEVIATIONS, _GUESS_DEVIATIONS = 20.0, 6.0
 _REST_PX = 0.03  # A camera that swayed is at rest within this.
-_NOTHING = np.array([0.0, 0.0, 1.0, 0.0])  # x, y, gain, offset.
 
 
 @dataclasses.dataclass(frozen=True)
@@ -66,14 +65,18 @@ class Alignment:
     moving: Whether the last image had to be shifted.
   """
 
-  def __init__(self, image: np.ndarray, edges: Edges = ROOM) -> None:
+  def __init__(
+    self, image: np.ndarray, geometry: turns.Geometry, edges: Edges = ROOM
+  ) -> None:
     """Begins with the reference.
 
     Args:
       image: (H, W, 3) uint8 RGB or (H, W) grey.
+      geometry: How it may move.
       edges: Where to look.
     """
-    self._settles = edges.settles
+    self._geometry, self._settles = geometry, edges.settles
+    self._nothing = np.array([*np.zeros(geometry.count), 1.0, 0.0])
     self._reference = difference.grey(image)
     soft = difference.soften(self._reference)
     rows, columns, self.tells_shifts = _telling(soft, edges)
@@ -81,16 +84,17 @@ class Alignment:
     self._index = rows * soft.shape[1] + columns  # (K,)
     self._sharp = self._reference[rows, columns].astype(float)
     levels = soft[rows, columns].astype(float)
-    slopes = [each[rows, columns] for each in difference.slopes(soft)]
-    shifts = self.tells_shifts * np.array(slopes, float)
-    # What changes at each pixel with each of the four numbers: (4, K).
-    self._table = np.stack([*-shifts, levels, np.ones_like(levels)])
-    self._inverse = np.linalg.pinv(self._table.T)  # (4, K)
-    # Deviation of a shift for that of the pixels.
-    self._spread = np.linalg.norm(self._inverse[:2], axis=1).max()
+    slopes = np.array([each[rows, columns] for each in difference.slopes(soft)])
+    flow = geometry.flow(self._places_px)
+    motions = self.tells_shifts * (flow * slopes).sum(axis=1)
+    # What changes at each pixel with each of the numbers: (n, K).
+    self._table = np.stack([*-motions, levels, np.ones_like(levels)])
+    self._inverse = np.linalg.pinv(self._table.T)  # (n, K)
+    # Deviation of each motion for that of the pixels.
+    self._spread = np.linalg.norm(self._inverse[:-2], axis=1)
     self._range = float(np.abs(levels - levels.mean()).mean())
     self._useful = np.ptp(levels) > _MIN_RANGE
-    self._fit = _NOTHING
+    self._fit = self._nothing
     self._banded = edges.banded
     self._bands = bands.Bands(self._reference)
     self._sways = self.moving = False
@@ -114,7 +118,7 @@ class Alignment:
     if self._banded and not self._sways and _scatter(change) >= _STILL_LEVELS:
       image = self._bands.undo(difference.grey(image))
       change = self._change(image)
-    if self._fit is _NOTHING and self._as_it_was(change):
+    if self._fit is self._nothing and self._as_it_was(change):
       return image
     grey = difference.grey(image)
     return self._undo(grey) if self._find(grey) else None
@@ -126,17 +130,17 @@ class Alignment:
       Whether it is one.
     """
     fit, share, scatter = self._solve(difference.soften(grey))
-    if share < _MIN_FIT or not _GAINS[0] < fit[2] < _GAINS[1]:
-      self._fit = _NOTHING
+    if share < _MIN_FIT or not _GAINS[0] < fit[-2] < _GAINS[1]:
+      self._fit = self._nothing
       return False
-    shift_px = np.abs(fit[:2]).max()
+    motion_px = np.abs(fit[:-2])
     still_px = self._still_px(_DEVIATIONS * scatter)
-    self._sways |= bool(shift_px > still_px)
-    if shift_px < (_REST_PX if self._sways else still_px):
-      fit[:2] = 0.0
-    light = (fit[2] - 1) * self._sharp + fit[3]
-    still = not fit[:2].any() and _small(light)
-    self._fit = _NOTHING if still else fit
+    self._sways |= bool((motion_px > still_px).any())
+    if (motion_px < (_REST_PX if self._sways else still_px)).all():
+      fit[:-2] = 0.0
+    light = (fit[-2] - 1) * self._sharp + fit[-1]
+    still = not fit[:-2].any() and _small(light)
+    self._fit = self._nothing if still else fit
     return True
 
   def _change(self, image: np.ndarray) -> np.ndarray:
@@ -149,19 +153,19 @@ class Alignment:
     scatter = _scatter(change)
     limit = _outlier(scatter)
     guess = self._inverse @ np.clip(change, -limit, limit)
-    light = guess[2] * self._sharp + guess[3]
+    light = guess[-2] * self._sharp + guess[-1]
     still_px = self._still_px(_GUESS_DEVIATIONS * scatter)
-    still = np.abs(guess[:2]).max() < still_px
+    still = (np.abs(guess[:-2]) < still_px).all()
     return bool(still and _small(light))
 
-  def _still_px(self, levels: float) -> float:
-    """The largest shift that pixels wrong by so many grey levels may feign."""
+  def _still_px(self, levels: float) -> np.ndarray:
+    """The largest motions that pixels wrong by so many levels may feign."""
     if not self._settles:
-      return 0.0
-    return max(_STILL_PX, levels * self._spread)
+      return np.zeros_like(self._spread)
+    return np.maximum(_STILL_PX, levels * self._spread)
 
   def _solve(self, soft: np.ndarray) -> tuple[np.ndarray, float, float]:
-    """How an image differs, (4,).
+    """How an image differs, (n,).
 
     Also the share of pixels that it fits, and the scatter of residuals.
     """
@@ -169,28 +173,30 @@ class Alignment:
     for _ in range(_STEPS):
       residual = self._residual(soft, fit)
       fits = np.abs(residual) <= _outlier(_scatter(residual))
-      table[:2] = fit[2] * self._table[:2]
+      table[:-2] = fit[-2] * self._table[:-2]
       step = np.linalg.lstsq(table[:, fits].T, residual[fits], rcond=1e-6)[0]
       fit += step
-      if np.abs(step[:2]).max() < _ENOUGH_PX:
+      if np.abs(step[:-2]).max() < _ENOUGH_PX:
         break
     residual = self._residual(soft, fit)
-    explained = np.abs(residual) < _EXPLAINED * fit[2] * self._range
+    explained = np.abs(residual) < _EXPLAINED * fit[-2] * self._range
     return fit, float(explained.mean()), _scatter(residual)
 
   def _residual(self, soft: np.ndarray, fit: np.ndarray) -> np.ndarray:
     """What an image has more than the reference brought to it, (K,)."""
-    places = self._places_px + fit[:2, None].astype(np.float32)
+    places = self._geometry.moved(self._places_px, fit[:-2])
     seen = cv2.remap(soft, *places, cv2.INTER_LINEAR).ravel()
-    return seen - fit[2:] @ self._table[2:]
+    return seen - fit[-2:] @ self._table[-2:]
 
   def _undo(self, grey: np.ndarray) -> np.ndarray:
-    x, y, gain, offset = self._fit
+    motion, (gain, offset) = self._fit[:-2], self._fit[-2:]
     if gain != 1 or offset:
       levels = (np.arange(256) - offset) / gain
       grey = cv2.LUT(grey, np.clip(np.rint(levels), 0, 255).astype(np.uint8))
-    self.moving = bool(x or y)
-    return _shifted(grey, x, y, self._reference) if self.moving else grey
+    self.moving = bool(motion.any())
+    if not self.moving:
+      return grey
+    return self._geometry.undone(grey, motion, self._reference)
 
 
 def _scatter(residual: np.ndarray) -> float:  # (K,)
@@ -235,28 +241,3 @@ def _largest(values: np.ndarray, side: int) -> np.ndarray:  # (H, W)
   rows = row + side * np.arange(height)[:, None]
   columns = column + side * np.arange(width)
   return np.stack([rows.ravel(), columns.ravel()])
-
-
-def _shifted(
-  grey: np.ndarray, x: float, y: float, outside: np.ndarray
-) -> np.ndarray:
-  """The image (H, W) with its content moved by -x, -y pixels, bilinearly.
-
-  Args:
-    grey: (H, W) uint8.
-    x: To the right.
-    y: Down.
-    outside: (H, W) uint8, where nothing of the image comes to be.
-  """
-  left, top = int(np.floor(x)), int(np.floor(y))
-  across, down = x - left, y - top
-  mix = cv2.addWeighted(grey[:, :-1], 1 - across, grey[:, 1:], across, 0)
-  mix = cv2.addWeighted(mix[:-1], 1 - down, mix[1:], down, 0)
-  out = outside.copy()
-  height, width = mix.shape
-  to_rows = slice(max(-top, 0), height + min(-top, 0))
-  to_columns = slice(max(-left, 0), width + min(-left, 0))
-  rows = slice(max(top, 0), height + min(top, 0))
-  columns = slice(max(left, 0), width + min(left, 0))
-  out[to_rows, to_columns] = mix[rows, columns]
-  return out

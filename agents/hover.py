@@ -6,7 +6,7 @@ import math
 import cv2
 import numpy as np
 
-from waggle_tasks.agents import alignment, difference, ghost, learning
+from waggle_tasks.agents import alignment, difference, ghost, learning, turns
 from waggle_tasks.agents import config as config_lib
 
 _CONTRAST_PX = 96  # Side of the square in which there must be something.
@@ -97,7 +97,7 @@ class Hover:
 
   def _begin(self, image: np.ndarray, time_s: float) -> None:
     """Learns anew, with this image as the first."""
-    self._alignment = alignment.Alignment(image)
+    self._alignment = self._room(image)
     grey = difference.grey(image)
     self._scene = learning.Scene(
       self._config, grey, time_s, _middle(grey, _REST_PX),
@@ -134,7 +134,7 @@ class Hover:
       self._detector = scene.detector
       self._background.loosen(self._slack_px)
       mean = self._background.grey
-      self._alignment = alignment.Alignment(mean)
+      self._alignment = self._room(mean)
       self._know_target(mean)
       self._last: np.ndarray | None = None
     return True
@@ -181,9 +181,15 @@ class Hover:
     least = box_pixels if self._detector.noisy else _MIN_PIXELS
     return cv2.countNonZero(weights) >= least
 
+  def _room(self, image: np.ndarray) -> alignment.Alignment:
+    """Brings pictures to this one, whichever way their camera has turned."""
+    return alignment.Alignment(image, turns.Turns(image))
+
   def _know_target(self, grey: np.ndarray) -> None:
     rest = grey[_middle(grey, _REST_PX)]
-    self._target = alignment.Alignment(rest, alignment.TARGET)
+    self._target = alignment.Alignment(
+      rest, turns.Shifts(), alignment.TARGET
+    )
 
   def _hardly_moved(
     self, grey: np.ndarray, background: difference.Background, spread: float

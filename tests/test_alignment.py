@@ -4,7 +4,7 @@ import cv2
 import numpy as np
 import pytest
 
-from waggle_tasks.agents import alignment, difference
+from waggle_tasks.agents import alignment, difference, turns
 
 RNG = np.random.RandomState(0)
 
@@ -17,10 +17,24 @@ def scene(seed: int = 0) -> np.ndarray:
   return np.repeat(cv2.GaussianBlur(tiles, (0, 0), 1.5)[..., None], 3, axis=2)
 
 
+def room(image: np.ndarray) -> alignment.Alignment:
+  return alignment.Alignment(image, turns.Turns(image))
+
+
 def moved(image: np.ndarray, x_px: float, y_px: float) -> np.ndarray:
   matrix = np.array([[1.0, 0.0, x_px], [0.0, 1.0, y_px]])
   return cv2.warpAffine(
     image, matrix, (640, 480), borderMode=cv2.BORDER_REFLECT
+  )
+
+
+def turned(image: np.ndarray, *angles_deg: float) -> np.ndarray:
+  """What a camera of 60 degrees sees, turned about x, y and z."""
+  lens = np.array([[415.7, 0, 319.5], [0, 415.7, 239.5], [0, 0, 1]])
+  turn, _ = cv2.Rodrigues(np.radians(angles_deg))
+  plane = lens @ turn @ np.linalg.inv(lens)
+  return cv2.warpPerspective(
+    image, plane, (640, 480), borderMode=cv2.BORDER_REFLECT
   )
 
 
@@ -37,7 +51,7 @@ def test_a_swaying_picture_is_brought_back(
   shift_px: tuple[float, float], sigma: float
 ) -> None:
   image = scene()
-  align = alignment.Alignment(image)
+  align = room(image)
   back = align.step(noisy(moved(image, *shift_px), sigma))
   assert align.moving
   np.testing.assert_allclose(align.shift_px, shift_px, atol=0.1)
@@ -46,10 +60,26 @@ def test_a_swaying_picture_is_brought_back(
   assert np.quantile(wrong, 0.9) <= 4 + 1.2 * sigma
 
 
+@pytest.mark.parametrize('sigma', [0.0, 10.0])
+@pytest.mark.parametrize('degrees', [0.3, 1.0, 3.0])
+def test_a_camera_that_turns_little_by_little_is_brought_back(
+  degrees: float, sigma: float
+) -> None:
+  image = scene()
+  align = room(image)
+  for share in np.linspace(0, 1, 20):
+    angles = share * degrees * np.array([0.8, -1.0, 0.7])
+    back = align.step(noisy(turned(image, *angles), sigma))
+  assert align.moving
+  # But for what the camera no longer sees.
+  wrong = cv2.absdiff(back, difference.grey(image))[40:-40, 40:-40]
+  assert np.quantile(wrong, 0.9) <= 4 + 1.2 * sigma
+
+
 @pytest.mark.parametrize(('gain', 'offset'), [(1.2, 0), (0.6, 0), (0.9, 20)])
 def test_light_is_taken_out(gain: float, offset: float) -> None:
   image = scene()
-  align = alignment.Alignment(image)
+  align = room(image)
   back = align.step(cv2.convertScaleAbs(image, alpha=gain, beta=offset))
   assert not align.moving
   wrong = cv2.absdiff(back, difference.grey(image))
@@ -59,7 +89,7 @@ def test_light_is_taken_out(gain: float, offset: float) -> None:
 @pytest.mark.parametrize('sigma', [0.0, 5.0, 20.0])
 def test_a_picture_of_a_resting_camera_is_left_alone(sigma: float) -> None:
   image = scene()
-  align = alignment.Alignment(image)
+  align = room(image)
   for _ in range(10):
     seen = noisy(image, sigma)
     assert align.step(seen) is not None
@@ -69,7 +99,7 @@ def test_a_picture_of_a_resting_camera_is_left_alone(sigma: float) -> None:
 
 def test_what_moves_in_the_picture_does_not_move_the_picture() -> None:
   image = scene()
-  align = alignment.Alignment(image)
+  align = room(image)
   seen = image.copy()
   seen[200:300, 50:250] = moved(image, 9, 5)[200:300, 50:250]
   align.step(seen)
@@ -78,12 +108,12 @@ def test_what_moves_in_the_picture_does_not_move_the_picture() -> None:
 
 @pytest.mark.parametrize('other', [np.zeros_like(scene()), scene(1)])
 def test_another_picture_is_refused(other: np.ndarray) -> None:
-  assert alignment.Alignment(scene()).step(other) is None
+  assert room(scene()).step(other) is None
 
 
 def test_nothing_is_told_from_a_reference_without_contrast() -> None:
   flat = np.full_like(scene(), 90)
   other = scene()
-  align = alignment.Alignment(flat)
+  align = room(flat)
   assert align.step(other) is other
   assert not align.tells_shifts

@@ -1,0 +1,111 @@
+"""How a picture moves when its camera turns, or when it merely shifts.
+
+A camera that turns about its own centre moves its picture as a plane: without
+parallax, whatever is in it (Hartley and Zisserman 2004, section 8.4). Motions
+are in pixels: of the picture's middle, and of what is at its side.
+"""
+
+from typing import Protocol
+
+import cv2
+import numpy as np
+
+
+class Geometry(Protocol):
+  """What a picture can do as a whole.
+
+  Attributes:
+    count: How many numbers tell of it; the first two are of the middle.
+  """
+
+  count: int
+
+  def flow(self, places_px: np.ndarray) -> np.ndarray:
+    """How places (2, K) move with each number, (count, 2, K), at rest."""
+    ...
+
+  def moved(self, places_px: np.ndarray, motion: np.ndarray) -> np.ndarray:
+    """Where places (2, K) are after a motion (count,), (2, K) float32."""
+    ...
+
+  def undone(
+    self, grey: np.ndarray, motion: np.ndarray, outside: np.ndarray
+  ) -> np.ndarray:
+    """A picture (H, W) uint8 without a motion; `outside` where nothing is."""
+    ...
+
+
+class Shifts:
+  """Of a part of a picture: it shifts along x and y."""
+
+  count = 2
+
+  def flow(self, places_px: np.ndarray) -> np.ndarray:
+    """See `Geometry`."""
+    return np.repeat(np.eye(2)[:, :, None], places_px.shape[1], axis=2)
+
+  def moved(self, places_px: np.ndarray, motion: np.ndarray) -> np.ndarray:
+    """See `Geometry`."""
+    return places_px + motion[:, None].astype(np.float32)
+
+  def undone(
+    self, grey: np.ndarray, motion: np.ndarray, outside: np.ndarray
+  ) -> np.ndarray:
+    """See `Geometry`."""
+    plane = np.array([[1, 0, motion[0]], [0, 1, motion[1]], [0, 0, 1]], float)
+    return _undone(grey, plane, outside)
+
+
+class Turns:
+  """Of a whole picture: its camera turns about all three axes.
+
+  Five numbers: the middle's shift, the turn about the line of sight, and how
+  much more the sides move than the middle, which depends on the lens; so the
+  focal length need not be known, and pictures that merely shift fit as well.
+  """
+
+  count = 5
+
+  def __init__(self, image: np.ndarray) -> None:
+    """Makes it for pictures of the size of one, (H, W) or (H, W, 3)."""
+    self._middle_px = (np.array(image.shape[1::-1]) - 1) / 2
+    self._reach_px = float(self._middle_px.max())
+
+  def flow(self, places_px: np.ndarray) -> np.ndarray:
+    """See `Geometry`."""
+    p, q = (places_px - self._middle_px[:, None]) / self._reach_px
+    one, none = np.ones_like(p), np.zeros_like(p)
+    return np.array(
+      [[one, none], [none, one], [-q, p], [p * p, p * q], [p * q, q * q]]
+    )
+
+  def moved(self, places_px: np.ndarray, motion: np.ndarray) -> np.ndarray:
+    """See `Geometry`."""
+    plane = self._plane(motion)
+    x, y, depth = plane[:, :2] @ places_px + plane[:, 2:]
+    return np.stack([x / depth, y / depth]).astype(np.float32)
+
+  def undone(
+    self, grey: np.ndarray, motion: np.ndarray, outside: np.ndarray
+  ) -> np.ndarray:
+    """See `Geometry`."""
+    return _undone(grey, self._plane(motion), outside)
+
+  def _plane(self, motion: np.ndarray) -> np.ndarray:
+    """The homography (3, 3) from pixels before to pixels after."""
+    x, y, roll, across, down = motion / self._reach_px
+    turn = np.array([[1, -roll, x], [roll, 1, y], [-across, -down, 1]])
+    to_middle = np.eye(3)
+    to_middle[:2, 2] = -self._middle_px
+    to_middle[:2] /= self._reach_px
+    return np.linalg.inv(to_middle) @ turn @ to_middle
+
+
+def _undone(
+  grey: np.ndarray, plane: np.ndarray, outside: np.ndarray
+) -> np.ndarray:
+  """The picture of which `grey` is what a homography has made."""
+  return cv2.warpPerspective(
+    grey, plane, grey.shape[::-1], outside.copy(),
+    cv2.INTER_LINEAR | cv2.WARP_INVERSE_MAP, cv2.BORDER_TRANSPARENT,
+  )  # fmt: skip
