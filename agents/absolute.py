@@ -10,7 +10,6 @@ from waggle_tasks.agents import config as config_lib
 from waggle_tasks.agents import difference, hover, klt
 from waggle_tasks.agents import ghost as ghost_lib
 
-_SWAYS_S = 3.0  # So long the camera's fastest sway counts.
 _REPAIRS = 25  # Images that the background behind the hover is made from.
 # A target that is sought in the whole picture must be this much of itself.
 _MIN_SHARE, _MAX_SHARE = 0.3, 3.0
@@ -106,8 +105,6 @@ class Follower:
     noisy = self._detector.noise > config.speed_noise
     self._speed_s = config.speed_s * (1 + noisy + (departure.slack_px > 0))
     self._recent: deque[_Row] = deque()  # Time, x and y.
-    self._shifts: deque[_Row] = deque()
-    self._sways_px_s: deque[_Row] = deque()  # Time and speed.
     self._seen_s = math.inf
 
   def lost_s(self, time_s: float) -> float:
@@ -146,14 +143,8 @@ class Follower:
     self._repair(image, gate)
     self._centre_px, self._seen_s = centre_px, time_s
     _keep(self._recent, (time_s, *centre_px), self._speed_s)
-    _keep(self._shifts, (time_s, *self._alignment.shift_px), self._speed_s)
-    if self._background.slack is not None:
-      _keep(self._sways_px_s, (time_s, _speed(self._shifts)), _SWAYS_S)
-    # Where the whole room moves, a target at rest does too, by parallax.
-    sway_px_s = max((each for _, each in self._sways_px_s), default=0.0)
-    speed_px_s = max(_speed(self._recent) - sway_px_s, 0.0)
     return klt.Track(
-      time_s, centre_px, speed_px_s, support, min(share, 1.0), True,
+      time_s, centre_px, _speed(self._recent), support, min(share, 1.0), True,
       width_px=self._ghost.width_px,
     )  # fmt: skip
 

@@ -6,7 +6,7 @@ import math
 import numpy as np
 
 from waggle_tasks.agents import config as config_lib
-from waggle_tasks.agents import klt, segmenter
+from waggle_tasks.agents import klt, segmenter, wander
 
 _MEAN_S = 0.08  # To either side.
 _STEP = 0.02  # Of the span.
@@ -18,10 +18,15 @@ class ExcursionSegmenter:
   Attributes:
     active: Whether a gesture is under way.
     returned: Whether a gesture may be over: it is back, and slow.
+    wander: How the target wanders while it rests.
   """
 
   def __init__(
-    self, config: config_lib.Excursion, home_px: np.ndarray, width_px: float
+    self,
+    config: config_lib.Excursion,
+    home_px: np.ndarray,
+    width_px: float,
+    least_s: float = 0.0,
   ) -> None:
     """Begins with a target at rest.
 
@@ -29,12 +34,13 @@ class ExcursionSegmenter:
       config: When a gesture begins and ends.
       home_px: (2,) where it rests.
       width_px: How wide it is.
+      least_s: How long a gesture of a target that wanders lasts at least, by
+        the agreed clock: one may pass its home slowly in its middle.
     """
     self._config = config
-    self._home_px = home_px
     self._width_px = width_px
-    self._radius_px = config.away_px(width_px)
-    self._slow_px_s = config.slow_px_s(width_px)
+    self._least_s = least_s
+    self.wander = wander.Wander(config, home_px, width_px)
     self._begin()
 
   def _begin(self) -> None:
@@ -55,16 +61,20 @@ class ExcursionSegmenter:
       return self._lose(track)
     self._lost_since_s = math.nan
     config, now_s = self._config, track.time_s
-    away = np.hypot(*(track.centre_px - self._home_px)) > self._radius_px
+    way_px = np.hypot(*(track.centre_px - self.wander.home_px))
+    away = bool(way_px > self.wander.away_px)
     if not self.active:
       self._rest(track, away)
       return None
     self._path.append(track)
-    slow = track.speed_px_s < self._slow_px_s
+    slow = track.speed_px_s < self.wander.slow_px_s
     self.returned = back = slow and not away
     self._slow_since_s = _since(self._slow_since_s, slow, now_s)
     self._back_since_s = _since(self._back_since_s, back, now_s)
-    if config_lib.lasted(self._back_since_s, now_s, config.off_s):
+    if config_lib.lasted(self._back_since_s, now_s, config.off_s) and (
+      not self.wander.sways
+      or config_lib.lasted(self._away_since_s, now_s, self._least_s)
+    ):
       return self._finish(self._back_since_s)
     if config_lib.lasted(self._slow_since_s, now_s, config.stay_s):
       return self._finish(self._slow_since_s)
@@ -74,7 +84,7 @@ class ExcursionSegmenter:
     self._lead.append(track)
     lead_s = self._config.lead_s
     while track.time_s - self._lead[0].time_s > lead_s - 1e-6:
-      self._lead.popleft()
+      self.wander.rest(self._lead.popleft())
     self._away_since_s = _since(self._away_since_s, away, track.time_s)
     if config_lib.lasted(self._away_since_s, track.time_s, self._config.on_s):
       self._path, self.active = [*self._lead], True
@@ -101,11 +111,14 @@ class ExcursionSegmenter:
       np.array([each.centre_px for each in path]),
       np.array([each.time_s for each in path]),
     )
-    path_px = np.concatenate([[self._home_px], path_px])
+    path_px = np.concatenate([[self.wander.home_px], path_px])
     begin_s = self._away_since_s
     if loss is None:
       rest = [t.centre_px for t in self._path if t.time_s >= end_s]
-      self._home_px = np.mean(rest, axis=0)
+      home_px = np.mean(rest, axis=0)
+      if self.wander.sways:
+        path_px = np.concatenate([path_px, [home_px]])
+      self.wander.settle(home_px)
     self._begin()
     return segmenter.Segment(begin_s, end_s, path_px, loss, self._width_px)
 

@@ -78,6 +78,11 @@ class Separation:
     """Takes an image, (H, W) uint8, or notes that there was none."""
     self.greys.append((time_s, grey))
 
+  def forget(self, keep_s: float) -> None:
+    """Drops images that are older than the last one by so much."""
+    now_s = self.greys[-1][0]
+    self.greys = [each for each in self.greys if now_s - each[0] <= keep_s]
+
   def find(self) -> Ghost | None:
     """The ghost, once the target has left it in the last image."""
     now_s, grey = self.greys[-1]

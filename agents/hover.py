@@ -224,6 +224,9 @@ class Hover:
   ) -> Departure | None:
     resting = self._hardly_moved(grey, background, 1.0)
     separation.add(grey, time_s)
+    if resting:
+      self._since_s = time_s
+      separation.forget(self._config.separate_s)
     self.visible = resting and self._contrast
     if not resting and (found := separation.find()):
       return Departure(

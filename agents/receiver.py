@@ -150,7 +150,8 @@ class StagedReceiver:
     """
     config = group.zoomed(config or self.DEFAULT, agreement.camera.zoom)
     clock = agreement.clock if config.framing.clock else None
-    self._watcher = watchers.make(config)
+    least_s = 0.0 if clock is None else clock.least_s
+    self._watcher = watchers.make(config, least_s)
     templates = views.templates(agreement, config.views)
     self._recogniser = recogniser.Recogniser(config.recognition, templates)
     blind_s = 0.0
@@ -211,7 +212,9 @@ class StagedReceiver:
       found = self._recogniser.recognise(self.segment)
       moment = self._sight.event(self.segment.begin_s, self.segment.end_s)
       events.append(self._event(time_s, found.symbol, moment, found))
-    if self._stillness.step(self.track, watcher.anchor_px, watcher.moving):
+    if self._stillness.step(
+      self.track, watcher.anchor_px, watcher.moving, watcher.wander
+    ):
       if self._may_rest(time_s):
         moment = self._sight.event(self._stillness.since_s, time_s)
         events.append(self._event(time_s, Symbol.NULL, moment))

@@ -8,7 +8,7 @@ import math
 import numpy as np
 
 from waggle_tasks.agents import config as config_lib
-from waggle_tasks.agents import klt
+from waggle_tasks.agents import klt, wander
 
 
 class StillnessDetector:
@@ -37,13 +37,18 @@ class StillnessDetector:
     self._rested_s = -math.inf
     self._place_px = np.full(2, np.nan)
     self._confirmed = False
+    self._wander_px = self._wander_px_s = 0.0
 
   def begin(self) -> None:
     """Begins a rest anew, whatever there was."""
     self.since_s, self._confirmed = math.nan, False
 
   def step(
-    self, track: klt.Track, anchor_px: np.ndarray | None, moving: bool
+    self,
+    track: klt.Track,
+    anchor_px: np.ndarray | None,
+    moving: bool,
+    wanders: wander.Wander | None = None,
   ) -> bool:
     """Takes one frame's track.
 
@@ -51,11 +56,15 @@ class StillnessDetector:
       track: The target; a valid one has the tracking quality asked for.
       anchor_px: (2,) where the target was first, or None.
       moving: Whether a gesture is under way.
+      wanders: How the target wanders while it rests, where that is known.
 
     Returns:
       Whether this frame confirms a null.
     """
     now_s = track.time_s
+    self._wander_px = self._wander_px_s = 0.0
+    if wanders is not None and wanders.sways:
+      self._wander_px, self._wander_px_s = wanders.away_px, wanders.slow_px_s
     if moving:
       self._confirmed = False
     seen = track.valid and track.quality >= self._config.null_quality
@@ -93,11 +102,14 @@ class StillnessDetector:
     way_px = float(np.hypot(*(track.centre_px - self._place_px)))
     return way_px <= self._config.jump_px(
       track.width_px
-    ) and track.speed_px_s >= self._config.slow_px_s(track.width_px)
+    ) and track.speed_px_s >= self._slow_px_s(track)
+
+  def _slow_px_s(self, track: klt.Track) -> float:
+    return max(self._config.slow_px_s(track.width_px), self._wander_px_s)
 
   def _still(self, track: klt.Track, anchor_px: np.ndarray | None) -> bool:
-    config = self._config
+    reach_px = self._config.anchor_px + self._wander_px
     return anchor_px is not None and bool(
-      track.speed_px_s < config.slow_px_s(track.width_px)
-      and np.hypot(*(track.centre_px - anchor_px)) <= config.anchor_px
+      track.speed_px_s < self._slow_px_s(track)
+      and np.hypot(*(track.centre_px - anchor_px)) <= reach_px
     )

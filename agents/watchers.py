@@ -4,7 +4,14 @@ from typing import Protocol
 
 import numpy as np
 
-from waggle_tasks.agents import absolute, excursion, group, klt, segmenter
+from waggle_tasks.agents import (
+  absolute,
+  excursion,
+  group,
+  klt,
+  segmenter,
+  wander,
+)
 from waggle_tasks.agents import config as config_lib
 
 
@@ -25,6 +32,11 @@ class Watcher(Protocol):
   @property
   def moving(self) -> bool:
     """Whether a motion is under way."""
+    ...
+
+  @property
+  def wander(self) -> wander.Wander | None:
+    """How the target wanders while it rests, where that is known."""
     ...
 
   def step(
@@ -55,6 +67,10 @@ class FlowWatcher:
     """See `Watcher`."""
     return self._segmenter.active
 
+  @property
+  def wander(self) -> None:
+    """See `Watcher`."""
+
   def step(
     self, image: np.ndarray, time_s: float
   ) -> tuple[klt.Track, segmenter.Segment | None]:
@@ -67,10 +83,13 @@ class AbsoluteWatcher:
   """Absolute positions, cut where the target leaves its rest and returns."""
 
   def __init__(
-    self, tracking: config_lib.Differencing, motion: config_lib.Excursion
+    self,
+    tracking: config_lib.Differencing,
+    motion: config_lib.Excursion,
+    least_s: float,
   ) -> None:
     self._tracker = absolute.AbsoluteTracker(tracking)
-    self._motion = motion
+    self._motion, self._least_s = motion, least_s
     self._segmenter: excursion.ExcursionSegmenter | None = None
     self.gave_up = False
 
@@ -85,6 +104,11 @@ class AbsoluteWatcher:
     cut = self._segmenter
     return cut is not None and cut.active and not cut.returned
 
+  @property
+  def wander(self) -> wander.Wander | None:
+    """See `Watcher`."""
+    return None if self._segmenter is None else self._segmenter.wander
+
   def step(
     self, image: np.ndarray, time_s: float
   ) -> tuple[klt.Track, segmenter.Segment | None]:
@@ -96,14 +120,19 @@ class AbsoluteWatcher:
       return tracks[-1], None
     if self._segmenter is None:
       self._segmenter = excursion.ExcursionSegmenter(
-        self._motion, ghost.anchor_px, ghost.width_px
+        self._motion, ghost.anchor_px, ghost.width_px, self._least_s
       )
+      self._segmenter.wander.prime(tracks, self._motion.lead_s)
     segments = [self._segmenter.step(track) for track in tracks]
     return tracks[-1], next(filter(None, segments), None)
 
 
-def make(config: config_lib.Config) -> Watcher:
+def make(config: config_lib.Config, least_s: float = 0.0) -> Watcher:
   """The watcher of a configuration.
+
+  Args:
+    config: The receiver's numbers.
+    least_s: See `excursion.ExcursionSegmenter`.
 
   Raises:
     ReceiverError: if its tracker and its segmenter do not go together.
@@ -113,7 +142,7 @@ def make(config: config_lib.Config) -> Watcher:
       config_lib.Differencing() as tracking,
       config_lib.Excursion() as motion,
     ):
-      return AbsoluteWatcher(tracking, motion)
+      return AbsoluteWatcher(tracking, motion, least_s)
     case config_lib.Tracking() as tracking, config_lib.Motion() as motion:
       return FlowWatcher(tracking, motion)
   raise group.ReceiverError(

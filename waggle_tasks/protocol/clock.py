@@ -93,6 +93,12 @@ class Clock:
     shortest_s = min(each.duration_s for each in self.codebook.gestures)
     return _TELLING * shortest_s
 
+  @property
+  def least_s(self) -> float:
+    """How long the shortest gesture is seen to last at least."""
+    shortest_s = min(each.duration_s for each in self.codebook.gestures)
+    return _LEAST * (1 - self.tolerance.clock_rate) * shortest_s
+
   def motion(
     self,
     symbol: Symbol,
