@@ -94,7 +94,7 @@ class Alignment:
     self._spread = np.linalg.norm(self._inverse[:-2], axis=1)
     self._range = float(np.abs(levels - levels.mean()).mean())
     self._useful = np.ptp(levels) > _MIN_RANGE
-    self._fit = self._nothing
+    self._fit = self._last = self._nothing
     self._banded = edges.banded
     self._bands = bands.Bands(self._reference)
     self._sways = self.moving = False
@@ -129,10 +129,15 @@ class Alignment:
     Returns:
       Whether it is one.
     """
-    fit, share, scatter = self._solve(difference.soften(grey))
-    if share < _MIN_FIT or not _GAINS[0] < fit[-2] < _GAINS[1]:
-      self._fit = self._nothing
-      return False
+    soft = difference.soften(grey)
+    # From where it was last, or else from where it was first.
+    for start in (self._last, self._nothing):
+      fit, share, scatter = self._solve(soft, start)
+      if share >= _MIN_FIT and _GAINS[0] < fit[-2] < _GAINS[1]:
+        break
+      if start is self._nothing:
+        self._fit = self._nothing
+        return False
     motion_px = np.abs(fit[:-2])
     still_px = self._still_px(_DEVIATIONS * scatter)
     self._sways |= bool((motion_px > still_px).any())
@@ -140,7 +145,7 @@ class Alignment:
       fit[:-2] = 0.0
     light = (fit[-2] - 1) * self._sharp + fit[-1]
     still = not fit[:-2].any() and _small(light)
-    self._fit = self._nothing if still else fit
+    self._fit = self._last = self._nothing if still else fit
     return True
 
   def _change(self, image: np.ndarray) -> np.ndarray:
@@ -164,12 +169,14 @@ class Alignment:
       return np.zeros_like(self._spread)
     return np.maximum(_STILL_PX, levels * self._spread)
 
-  def _solve(self, soft: np.ndarray) -> tuple[np.ndarray, float, float]:
-    """How an image differs, (n,).
+  def _solve(
+    self, soft: np.ndarray, start: np.ndarray
+  ) -> tuple[np.ndarray, float, float]:
+    """How an image differs, (n,), sought from a start on.
 
     Also the share of pixels that it fits, and the scatter of residuals.
     """
-    fit, table = self._fit.copy(), self._table.copy()
+    fit, table = start.copy(), self._table.copy()
     for _ in range(_STEPS):
       residual = self._residual(soft, fit)
       fits = np.abs(residual) <= _outlier(_scatter(residual))

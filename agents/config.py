@@ -86,7 +86,7 @@ class Differencing(group.Group):
   box_sigmas: float = 4.0
   watch_sigmas: float = 8.0
   slack_px: float = group.number(1.0, 0, 64)
-  rest_px: float = 4.0
+  rest_px: float = 16.0
   speed_s: float = group.number(0.4, 0.04, 60)
   speed_noise: float = group.number(4.0, 0, 255)
   gate_widths: float = 0.9

@@ -62,13 +62,12 @@ class ExcursionSegmenter:
     self._lost_since_s = math.nan
     config, now_s = self._config, track.time_s
     way_px = np.hypot(*(track.centre_px - self.wander.home_px))
-    away = bool(way_px > self.wander.away_px)
     if not self.active:
-      self._rest(track, away)
+      self._rest(track, bool(way_px > self.wander.away_px))
       return None
     self._path.append(track)
     slow = track.speed_px_s < self.wander.slow_px_s
-    self.returned = back = slow and not away
+    self.returned = back = slow and bool(way_px <= self.wander.back_px)
     self._slow_since_s = _since(self._slow_since_s, slow, now_s)
     self._back_since_s = _since(self._back_since_s, back, now_s)
     if config_lib.lasted(self._back_since_s, now_s, config.off_s) and (
@@ -84,7 +83,8 @@ class ExcursionSegmenter:
     self._lead.append(track)
     lead_s = self._config.lead_s
     while track.time_s - self._lead[0].time_s > lead_s - 1e-6:
-      self.wander.rest(self._lead.popleft())
+      self._lead.popleft()
+    self.wander.rest(track, lead_s)
     self._away_since_s = _since(self._away_since_s, away, track.time_s)
     if config_lib.lasted(self._away_since_s, track.time_s, self._config.on_s):
       self._path, self.active = [*self._lead], True

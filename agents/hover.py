@@ -106,6 +106,7 @@ class Hover:
     self._scene.first.loosen(self._slack_px)
     self._detector = self._scene.detector
     self._know_target(grey)
+    self._wanders = False
     self._since_s = time_s
     smooth = difference.soften(grey[_middle(grey, _CONTRAST_PX)])
     self._contrast = bool(np.ptp(smooth) >= self._config.min_contrast)
@@ -127,6 +128,7 @@ class Hover:
     moved = self._moved(grey[middle], scene.first[middle], 2.0)
     if moved and not self._hardly_moved(grey, scene.first, 2.0):
       return False
+    self._wanders |= moved
     scene.add(grey, time_s)
     self.visible = self._contrast
     if config_lib.lasted(self._since_s, time_s, self._config.learn_s):
@@ -135,6 +137,9 @@ class Hover:
       self._background.loosen(self._slack_px)
       mean = self._background.grey
       self._alignment = self._room(mean)
+      if self._wanders:  # Which smears it in the mean.
+        box = _middle(grey, _REST_PX)
+        mean[box] = grey[box]
       self._know_target(mean)
       self._last: np.ndarray | None = None
     return True
@@ -233,13 +238,12 @@ class Hover:
         aligner, self._detector, self._speckled, background,
         self._slack_px, found, separation.greys,
       )  # fmt: skip
-    if not self._moved(grey, background, 1.0):
+    moved = self._moved(grey, background, 1.0)
+    self._wanders |= moved and resting
+    if not moved and not self._wanders:
       self._separation = None
     elif config_lib.lasted(self._since_s, time_s, self._config.separate_s):
-      if resting:
-        self._separation = None
-      else:
-        self._forget()
+      self._forget()
     return None
 
 

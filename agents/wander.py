@@ -5,7 +5,9 @@ wind. What is a motion, and what is only that, is told by how far and how fast
 it has wandered in the rests so far.
 """
 
+from collections import deque
 import math
+import os
 
 import numpy as np
 
@@ -13,11 +15,11 @@ from waggle_tasks.agents import config as config_lib
 from waggle_tasks.agents import klt
 
 _SMOOTH_S = 0.4  # Noise of single pictures is no wandering.
-_HOME_S = 2.0  # In this time a place of rest follows.
-_TIMES, _TIMES_FAST = 6.0, 4.0  # Root mean squares that a rest stays within.
+_HOME_S = float(os.environ.get('HS','1.0'))  # In this time a place of rest follows.
+_TIMES, _TIMES_FAST = float(os.environ.get('TI','5')), 4.0  # Root mean squares that a rest stays within.
 # A wandering target goes no farther than this, in its widths, and no faster, in
 # its widths a second: what does is a motion.
-_MOST, _MOST_FAST = 0.5, 1.0
+_LEAST, _MOST, _MOST_FAST = float(os.environ.get('LE','.3')), float(os.environ.get('MO','.5')), 1.0
 
 
 class Wander:
@@ -26,7 +28,9 @@ class Wander:
   Attributes:
     home_px: (2,) where the target rests.
     sways: Whether it wanders so far that it counts.
-    away_px: How far from home it has left it.
+    away_px: How far from home it has left it...
+    back_px: ...and how near it is back: while it was away, home may have
+      wandered on.
     slow_px_s: Below which speed it rests.
   """
 
@@ -44,35 +48,52 @@ class Wander:
     self._least_px = config.away_px(width_px)
     self._least_px_s = config.slow_px_s(width_px)
     self._ways = self._speeds = self._time_s = 0.0
-    self.away_px, self.slow_px_s = self._least_px, self._least_px_s
+    self.away_px = self.back_px = self._least_px
+    self.slow_px_s = self._least_px_s
     self.sways = False
-    self.home_px = home_px
+    self._recent: deque[tuple[klt.Track, np.ndarray, float]] = deque()
     self.settle(home_px)
 
   def settle(self, home_px: np.ndarray) -> None:
     """Takes where a new rest is, (2,)."""
     self.home_px = self._place_px = self._mean_px = home_px
     self._last_s = math.nan
+    self._recent.clear()
 
-  def rest(self, track: klt.Track) -> None:
-    """Takes a target that is seen at rest."""
-    past_s = track.time_s - self._last_s
+  def rest(self, track: klt.Track, past_s: float) -> None:
+    """Takes a target that is seen at rest, unless it leaves it soon.
+
+    Args:
+      track: The target.
+      past_s: How long at least it must then have been at rest to count.
+    """
+    elapsed_s = track.time_s - self._last_s
     self._last_s = track.time_s
-    if math.isnan(past_s):
+    if math.isnan(elapsed_s):
       return
-    self._place_px = _nearer(self._place_px, track.centre_px, past_s, _SMOOTH_S)
-    self._mean_px = _nearer(self._mean_px, self._place_px, past_s, _HOME_S)
-    way_px = self._place_px - self._mean_px
-    self._ways += past_s * float(way_px @ way_px) / 2
-    self._speeds += past_s * track.speed_px_s**2
-    self._time_s += past_s
+    self._place_px = _nearer(
+      self._place_px, track.centre_px, elapsed_s, _SMOOTH_S
+    )
+    self._recent.append((track, self._place_px - self.home_px, elapsed_s))
+    while track.time_s - self._recent[0][0].time_s > past_s - 1e-6:
+      self._count(*self._recent.popleft())
+
+  def _count(
+    self, track: klt.Track, way_px: np.ndarray, elapsed_s: float
+  ) -> None:
+    self._mean_px = _nearer(self._mean_px, track.centre_px, elapsed_s, _HOME_S)
+    self._ways += elapsed_s * float(way_px @ way_px) / 2
+    self._speeds += elapsed_s * track.speed_px_s**2
+    self._time_s += elapsed_s
     usual_px = math.sqrt(self._ways / self._time_s)
     self.sways = _TIMES * usual_px > self._least_px
     if self.sways:
       usual_px_s = math.sqrt(self._speeds / self._time_s)
       self.home_px = self._mean_px
       most_px, most_px_s = _MOST * self._width_px, _MOST_FAST * self._width_px
-      self.away_px = max(min(_TIMES * usual_px, most_px), self._least_px)
+      away_px = max(_TIMES * usual_px, _LEAST * self._width_px)
+      self.away_px = max(min(away_px, most_px), self._least_px)
+      self.back_px = max(most_px, self._least_px)
       fast_px_s = min(_TIMES_FAST * usual_px_s, most_px_s)
       self.slow_px_s = max(fast_px_s, self._least_px_s)
 
@@ -87,7 +108,7 @@ class Wander:
     home_px = self.home_px
     for track in tracks:
       if track.valid and track.time_s < left_s - lead_s:
-        self.rest(track)
+        self.rest(track, lead_s)
     self.settle(home_px)
 
 
