@@ -18,13 +18,13 @@ from waggle_tasks.experiments.studies import sweep_results
 if TYPE_CHECKING:
   from matplotlib import axes, image
 
+NEEDED = "need matplotlib: pip install 'waggle-tasks[analysis]'"
 MISSING = (
-  'Pictures of the envelope need matplotlib:'
-  " pip install 'waggle-tasks[analysis]'; then `waggle sweep --summary FOLDER`."
+  f'Pictures of the envelope {NEEDED}; then `waggle sweep --summary FOLDER`.'
 )
 _CELL_IN = 0.62, 0.42  # Width and height of a cell.
 _MARGIN_IN = 1.3, 1.15
-_DPI = 150
+DPI = 150
 
 
 class FigureError(errors.WaggleError):
@@ -84,7 +84,7 @@ def draw(
       )
     vectors, painted = io.BytesIO(), io.BytesIO()
     figure.savefig(vectors, format='svg', metadata={'Date': None})
-    figure.savefig(painted, format='png', dpi=_DPI)
+    figure.savefig(painted, format='png', dpi=DPI)
   return [
     files.replace(folder / name, data.getvalue())
     for name, data in zip(

@@ -49,7 +49,8 @@ class Drift:
       one of `HOVERS`.
     observer_hover: How each observer hovers beside that: one of `HOVERS`.
     hover_amplitude: By how much the measured hovers are multiplied, 0 to 2.
-    hover_log: The hover of a log of one's own, where one is 'log'.
+    hover_log: The hover of a log of one's own, where one of them is 'log': a
+      `hover.Spectrum`. As a flag, the file of the log.
   """
 
   performer_drift_m: float = 0.0
@@ -70,17 +71,20 @@ class Drift:
       'hover_amplitude': (0.0, 2.0),
     }
     checks.settle_numbers(self, limits, DriftError)
-    if not isinstance(self.hover_log, hover_lib.Spectrum | None):
-      raise DriftError(
-        f'`hover_log` must be a hover_lib.Spectrum or None: got {self.hover_log!r}'
-      )
+    self._check_hover()
+
+  def _check_hover(self) -> None:
     for field in ('performer_hover', 'observer_hover'):
-      value = getattr(self, field)
-      checks.choice(field, value, HOVERS, DriftError)
-      if value == 'log' and self.hover_log is None:
-        raise DriftError(
-          f"`hover_log` must be given where `{field}` is 'log'"
-        )
+      checks.choice(field, getattr(self, field), HOVERS, DriftError)
+    names = self.performer_hover, self.observer_hover
+    log = self.hover_log
+    if not isinstance(log, hover_lib.Spectrum | None):
+      raise DriftError(f'`hover_log` must be a hover.Spectrum: got {log!r}')
+    if ('log' in names) != (log is not None):
+      raise DriftError(
+        '`hover_log` must be given where `performer_hover` or `observer_hover`'
+        f" is 'log', and only there: got {'one' if log else 'none'} for {names}"
+      )
 
   @property
   def near_m(self) -> float:
@@ -141,7 +145,10 @@ class Drift:
     name = getattr(self, f'{role}_hover')
     if not self.hover_amplitude:
       return None
-    return self.hover_log if name == 'log' else hover_presets.PRESETS.get(name)
+    if name == 'log':
+      return self.hover_log
+    preset = hover_presets.PRESETS.get(name)
+    return preset and preset.spectrum
 
   def _rms_m(self, role: str) -> float:
     spectrum = self._spectrum(role)

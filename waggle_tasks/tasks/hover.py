@@ -73,7 +73,7 @@ class Spectrum:
         checks.number(field.name, value, 0.0, most, HoverError)
         for value in values
       ]
-      checks.settle(self, field.name, tuple(checked))
+      checks.settle(self, field.name, tuple(map(float, checked)))
 
   @property
   def place_m(self) -> np.ndarray:  # (3, B)
