@@ -2,7 +2,9 @@
 
 from collections.abc import Mapping
 import pathlib
+from typing import Any
 import zipfile
+import zlib
 
 import numpy as np
 
@@ -43,9 +45,11 @@ def read(path: pathlib.Path) -> hover.Spectrum:
 
 def _arrays(path: pathlib.Path) -> dict[str, np.ndarray]:
   try:
-    with np.load(path) as archive:
+    with path.open('rb') as file, zipfile.ZipFile(file):
+      file.seek(0)
+      archive: Any = np.load(file)
       columns = {name: archive[name] for name in archive.files}
-  except (OSError, ValueError, EOFError, zipfile.BadZipFile) as error:
+  except (OSError, ValueError, EOFError, zipfile.error, zlib.error) as error:
     raise hover_log.LogError(f'it cannot be read: {error}') from None
   _check_names([*columns], [*COLUMNS])
   return columns
@@ -53,13 +57,16 @@ def _arrays(path: pathlib.Path) -> dict[str, np.ndarray]:
 
 def _table(path: pathlib.Path) -> dict[str, np.ndarray]:
   try:
-    with path.open(encoding='utf-8-sig') as lines:
-      names = [name.strip() for name in lines.readline().split(',')]
-      _check_names(names, [name for each in COLUMNS.values() for name in each])
-      rows = np.loadtxt(lines, delimiter=',', ndmin=2)
-  except (OSError, ValueError) as error:  # Of bytes that are no text, too.
-    if isinstance(error, hover_log.LogError):
-      raise
+    header, *lines = path.read_text(encoding='utf-8-sig').splitlines() or ['']
+  except (OSError, ValueError) as error:  # Of bytes that are no text.
+    raise hover_log.LogError(f'it cannot be read: {error}') from None
+  names = [name.strip() for name in header.split(',')]
+  _check_names(names, [name for each in COLUMNS.values() for name in each])
+  if not any(map(str.strip, lines)):
+    raise hover_log.LogError('it must have lines of numbers: got none')
+  try:
+    rows = np.loadtxt(lines, delimiter=',', ndmin=2)
+  except ValueError as error:
     raise hover_log.LogError(f'it cannot be read: {error}') from None
   if rows.shape[1] != len(names):
     raise hover_log.LogError(

@@ -255,6 +255,10 @@ class Broadcast(copies.Uncopied, composer.Task):
     drifts = self._fleet.drifts(self._clock.time_s)
     return {name: place for name, (place, _) in drifts.items()}
 
+  def attitudes_rad(self) -> dict[str, np.ndarray]:
+    """Roll, pitch and yaw that each vehicle's hover gives it, (3,), by name."""
+    return self._fleet.attitudes_rad(self._clock.time_s)
+
   @property
   def contacts(self) -> tuple[tuple[str, str], ...]:
     """Pairs of names that touched in the last step; 'room' is the arena."""

@@ -129,3 +129,11 @@ class Fleet:
       place, rate, _ = sway.at(time_s)
       out[name] = place[:3], rate[:3]
     return out
+
+  def attitudes_rad(self, time_s: float) -> dict[str, np.ndarray]:
+    """Roll, pitch and yaw of the hover at a time, (3,), by vehicle."""
+    out = {}
+    for name, sway in self._sways.items():
+      attitude = sway.attitude(time_s)
+      out[name] = np.zeros(3) if attitude is None else attitude[0]
+    return out
