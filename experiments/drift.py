@@ -64,7 +64,7 @@ def _report(
   source = {} if preset is None else preset.published
   rows = [*_rows(source, hover_measure.figures(spectrum))]
   header = (
-    'axis', '', 'rms', 'mm/s', *(f'{band} Hz' for band in hover_measure.BANDS)
+    'axis', 'from', 'rms', 'mm/s', *(f'{band} Hz' for band in hover_measure.BANDS)
   )  # fmt: skip
   title = name if preset is None else f'{name}: {preset.source}'
   return f'{title}\n{table.render(header, rows)}'
@@ -72,11 +72,11 @@ def _report(
 
 def _rows(
   source: Mapping[str, hover_presets.Figures],
-  flown: Mapping[str, hover_presets.Figures],
+  signal: Mapping[str, hover_presets.Figures],
 ) -> Iterator[list[str]]:
-  for axis, figures in flown.items():
+  for axis, figures in signal.items():
     unit = 'mm' if 'speed' in figures else 'deg'
-    for who, values in (('source', source.get(axis)), ('flown', figures)):
+    for who, values in (('source', source.get(axis)), ('signal', figures)):
       if values is not None:
         cells = (table.number(values.get(each)) for each in _QUANTITIES)
         yield [f'{axis} {unit}', who, *cells]

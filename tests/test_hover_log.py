@@ -255,7 +255,7 @@ def test_the_command_shows_presets_beside_their_sources(waggle: Waggle) -> None:
   assert 'air_garage_cflib' in child.stdout
   lines = {tuple(line.split()[:3]): line for line in child.stdout.splitlines()}
   assert '5.60' in lines['x', 'mm', 'source']
-  assert len(lines['x', 'mm', 'flown'].split()) == 10
+  assert len(lines['x', 'mm', 'signal'].split()) == 10
   assert ('z', 'mm', 'source') not in lines
 
 

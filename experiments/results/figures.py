@@ -24,7 +24,7 @@ MISSING = (
 )
 _CELL_IN = 0.62, 0.42  # Width and height of a cell.
 _MARGIN_IN = 1.3, 1.15
-DPI = 150
+_DPI = 150
 
 
 class FigureError(errors.WaggleError):
@@ -84,7 +84,7 @@ def draw(
       )
     vectors, painted = io.BytesIO(), io.BytesIO()
     figure.savefig(vectors, format='svg', metadata={'Date': None})
-    figure.savefig(painted, format='png', dpi=DPI)
+    figure.savefig(painted, format='png', dpi=_DPI)
   return [
     files.replace(folder / name, data.getvalue())
     for name, data in zip(
