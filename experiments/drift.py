@@ -63,9 +63,8 @@ def _report(
   """The table of one hover."""
   source = {} if preset is None else preset.published
   rows = [*_rows(source, hover_measure.figures(spectrum))]
-  header = (
-    'axis', 'from', 'rms', 'mm/s', *(f'{band} Hz' for band in hover_measure.BANDS)
-  )  # fmt: skip
+  bands = [f'{band} Hz' for band in hover_measure.BANDS]
+  header = 'axis', 'from', 'rms', 'mm/s', *bands
   title = name if preset is None else f'{name}: {preset.source}'
   return f'{title}\n{table.render(header, rows)}'
 

@@ -84,7 +84,7 @@ def _bands(axis: 'axes.Axes', name: str, spectrum: hover.Spectrum) -> None:
   axis.set_yscale('log')
   axis.set_title(name, size=10)
   axis.set_xlabel('Hz')
-  axis.set_ylabel('rms by band, mm or degrees')
+  axis.set_ylabel('rms, mm or deg')
 
 
 def _times(
