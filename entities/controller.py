@@ -27,6 +27,9 @@ _LIFT_MPS2 = np.array([0.0, 0.0, 9.81])
 
 _STIFFNESS_N_M = crazyflie.MASS_KG * _POSITION_RAD_S**2
 _DAMPING_NS_M = 2 * crazyflie.MASS_KG * _POSITION_RAD_S
+# What the attitude loop is told of an angle and of its two derivatives, so that
+# it follows at once.
+_LEAD = np.array([1.0, 2 / _ATTITUDE_RAD_S, 1 / _ATTITUDE_RAD_S**2])
 
 
 class Controller:
@@ -45,13 +48,10 @@ class Controller:
       vehicle: The attached vehicle.
       yaw_rad: The heading from which turns are counted.
     """
-    half_rad = yaw_rad / 2
+    self._yaw_rad = yaw_rad
     name = vehicle.mjcf_model.model
-    home = root.worldbody.add(
-      'site',
-      name=f'{name}_heading',
-      group=3,
-      quat=(math.cos(half_rad), 0, 0, math.sin(half_rad)),
+    self._heading = root.worldbody.add(
+      'site', name=f'{name}_heading', group=3, quat=_about_z(yaw_rad)
     )
     world = root.find('site', 'world') or root.worldbody.add(
       'site', name='world', group=3
@@ -73,7 +73,7 @@ class Controller:
       self._add(
         root,
         vehicle,
-        home,
+        self._heading,
         f'{name}_torque_{"xyz"[axis]}',
         axis + 3,
         inertia * _ATTITUDE_RAD_S**2,
@@ -112,6 +112,7 @@ class Controller:
   def after_compile(self, physics: mjcf.Physics) -> None:
     """Finds the actuators in a compiled model."""
     self._indices = physics.bind(self._actuators).element_id
+    self._frame = physics.bind(self._heading).element_id
 
   def command(
     self,
@@ -120,11 +121,12 @@ class Controller:
     velocity_mps: np.ndarray,  # (3,)
     acceleration_mps2: np.ndarray,  # (3,)
     turn_rad: float = 0.0,
+    attitude_rad: np.ndarray | None = None,  # (3, 3)
   ) -> None:
     """Sets the reference for the coming control step.
 
     The feedforward of velocity, acceleration and weight is folded into the
-    position that the actuators pull towards.
+    position that the actuators pull towards, that of an attitude into theirs.
 
     Args:
       physics: The compiled model.
@@ -132,9 +134,24 @@ class Controller:
       velocity_mps: World velocity.
       acceleration_mps2: World acceleration.
       turn_rad: Heading, counted from the vehicle's own, within pi.
+      attitude_rad: Roll, pitch and yaw beside that, a few degrees each, their
+        rates and their second rates; without it the body stays level. Either
+        all commands of an episode have one, or none.
     """
     force_n = crazyflie.MASS_KG * (acceleration_mps2 + _LIFT_MPS2)
     pull_m = (
       position_m + (_DAMPING_NS_M * velocity_mps + force_n) / _STIFFNESS_N_M
     )
-    physics.data.ctrl[self._indices] = [*pull_m, 0.0, 0.0, turn_rad]
+    aim_rad = 0.0, 0.0, turn_rad
+    if attitude_rad is not None:
+      # Small angles beside a turn are the actuators' own only if they start
+      # from there.
+      physics.model.site_quat[self._frame] = _about_z(self._yaw_rad + turn_rad)
+      physics.model.site_sameframe[self._frame] = 0
+      aim_rad = _LEAD @ attitude_rad
+    physics.data.ctrl[self._indices] = [*pull_m, *aim_rad]
+
+
+def _about_z(angle_rad: float) -> tuple[float, float, float, float]:
+  """The quaternion of a heading."""
+  return math.cos(angle_rad / 2), 0.0, 0.0, math.sin(angle_rad / 2)

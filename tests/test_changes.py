@@ -10,6 +10,7 @@ from waggle_tasks.experiments.record import changes, scenario_fields, writer
 from waggle_tasks.experiments.video import film, panel
 from waggle_tasks.protocol import gestures
 from waggle_tasks.protocol.symbols import Symbol
+from waggle_tasks.tasks import hover
 
 # A value of each field that is not its default.
 OTHERS = {
@@ -21,6 +22,10 @@ OTHERS = {
   'heading_step_deg': 30.0, 'flicker_hz': 3.0, 'photons': 100.0,
   'occluder_every_s': 30.0, 'rate_hz': 50.0, 'camera_width_px': 320,
   'camera_height_px': 240, 'heading_bits': 4, 'distance_bits': 3,
+  'performer_hover': 'mocap', 'observer_hover': 'flow_deck',
+  'hover_log': scenario_fields.table()['hover_log'].told(
+    hover.Spectrum(*[(0.5,) * hover.BANDS] * 6)
+  ),
 }  # fmt: skip
 
 
@@ -48,6 +53,8 @@ def test_every_field_that_is_changed_is_said(name: str) -> None:
     extra = {'occluder_every_s': 20.0}
   if name.endswith('_bits'):
     extra = {'payload': '0000010'}
+  if name == 'hover_log':
+    extra = {'performer_hover': 'log'}
   said = changes.of(made(**{**extra, name: other}))
   assert any(each.startswith(f'{name}=') for each in said)
   assert len(said) == 1 + len(extra.keys() - {name})

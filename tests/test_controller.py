@@ -4,6 +4,7 @@ from collections.abc import Callable, Iterator
 import math
 
 from dm_control import mjcf
+import mujoco
 import numpy as np
 import pytest
 
@@ -80,6 +81,29 @@ def test_a_turn_is_counted_from_the_vehicles_own_heading(
   hold(3.0, PLACE_M, turn_rad)
   apart_rad = yaw_rad(physics) - YAW_RAD - turn_rad
   assert math.remainder(apart_rad, math.tau) == pytest.approx(0, abs=1e-2)
+  np.testing.assert_allclose(physics.data.qpos[:3], PLACE_M, atol=1e-3)
+
+
+@pytest.mark.parametrize('turn_rad', [0.0, 1.5, -2.8, 3.1])
+def test_a_small_attitude_is_flown_beside_any_turn(
+  scene: Scene, turn_rad: float
+) -> None:
+  """Roll to the right, pitch with the nose down, yaw to the left."""
+  physics, pilot = scene
+  wanted_rad = np.radians([2.0, -3.0, 1.5])
+  lean = np.stack([wanted_rad, REST, REST])
+  for step in range(150):
+    grown = min(step / 75, 1.0)
+    pilot.command(physics, PLACE_M, REST, REST, grown * turn_rad, lean)
+    physics.step(10)
+  half = (YAW_RAD + turn_rad + wanted_rad[2]) / 2
+  back = np.array([math.cos(half), 0.0, 0.0, -math.sin(half)])
+  level = np.zeros(4)
+  mujoco.mju_mulQuat(level, back, physics.data.qpos[3:7])
+  sign = math.copysign(1.0, level[0])
+  np.testing.assert_allclose(
+    2 * sign * level[1:], (*wanted_rad[:2], 0.0), atol=2e-3
+  )
   np.testing.assert_allclose(physics.data.qpos[:3], PLACE_M, atol=1e-3)
 
 

@@ -234,6 +234,13 @@ def test_neighbours_keep_their_distance_in_spite_of_drift() -> None:
     ),
     ({'observer_yaw_drift_deg': 6}, '`observer_yaw_drift_deg` must be between'),
     ({'drift_time_s': 0.0}, '`drift_time_s` must be between 0.3 and 10'),
+    (
+      {'performer_hover': 'mocup'},
+      "`performer_hover` must be .*'none', .*'mocup'. Did you mean mocap",
+    ),
+    ({'observer_hover': None}, '`observer_hover` must be one of'),
+    ({'hover_amplitude': -1}, '`hover_amplitude` must be between 0 and 2: got'),
+    ({'hover_log': 'a.csv'}, '`hover_log` must be a hover.Spectrum: got'),
     ({'drift_time_s': float('nan')}, '`drift_time_s` must be a finite number'),
   ],
 )
@@ -251,3 +258,7 @@ def test_a_suite_may_ask_for_drift() -> None:
   assert case.scene.drift == dataclasses.replace(
     drift.Drift(), observer_drift_m=0.002
   )
+  (case,) = suites.from_rows(
+    [{'name': 'hover', 'drift': {'observer_hover': 'mocap'}}]
+  )
+  assert case.scene.drift == drift.Drift(observer_hover='mocap')

@@ -29,7 +29,7 @@ from waggle_tasks.arenas import layouts
 from waggle_tasks.experiments.record import verdicts
 from waggle_tasks.protocol import clock, frame, gestures, payload, timing
 from waggle_tasks.protocol.symbols import Symbol
-from waggle_tasks.tasks import drift, surroundings
+from waggle_tasks.tasks import drift, hover, surroundings
 
 
 def through_json(value: object) -> Any:  # noqa: ANN401
@@ -53,6 +53,7 @@ def test_every_scenario_of_the_paper_comes_back(name: str) -> None:
 
 
 SECONDS = st.floats(0, 10)
+BANDS = st.tuples(*[st.floats(0, 0.4)] * hover.BANDS)
 SCENES = st.builds(
   scenario.Scenario,
   control=st.sampled_from(scenario.CONTROLS),
@@ -79,7 +80,11 @@ SCENES = st.builds(
   surroundings=st.builds(
     surroundings.Surroundings, occluder_mps=st.floats(0.1, 2)
   ),
-  drift=st.builds(drift.Drift, st.floats(0, 0.03)),
+  drift=st.builds(
+    drift.Drift, st.floats(0, 0.03), observer_hover=st.just('log'),
+    performer_hover=st.sampled_from(drift.HOVERS),
+    hover_log=st.builds(hover.Spectrum, *[BANDS] * 6),
+  ),
   sensor=st.builds(
     sensor.Sensor, noise_sigma=st.floats(0, 128), late_frames=st.integers(0, 25)
   ),

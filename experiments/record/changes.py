@@ -30,4 +30,6 @@ def among(fields: Mapping[str, Any], told: Container[str] = ()) -> list[str]:
 def _text(value: object) -> str:
   if isinstance(value, bool):
     return str(value).lower()
+  if isinstance(value, str) and value.startswith('{'):
+    return 'own'  # A value of its own has no room here.
   return f'{value:g}' if isinstance(value, float) else str(value)

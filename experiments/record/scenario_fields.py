@@ -2,18 +2,20 @@
 
 Fields of a scenario that are values of their own are spread out: the fields of
 its groups under their own names, its codebook and units as the numbers that
-they are made from.
+they are made from. A group's own value, as the hover of a log, is one text.
 """
 
 from collections.abc import Callable, Iterator, Mapping
 import dataclasses
 import functools
 import inspect
+import json
 import math
+import pathlib
 from typing import Any
 
-from waggle_tasks import plain, scenario
-from waggle_tasks.experiments.record import docs
+from waggle_tasks import kinds, plain, scenario
+from waggle_tasks.experiments.record import docs, hover_file
 from waggle_tasks.protocol import checks, gestures
 from waggle_tasks.protocol.symbols import Symbol
 
@@ -34,6 +36,7 @@ class Field:
     name: What its owner calls it.
     default: What it is by default.
     text: What the owner's docstring says of it.
+    form: What is made of its text, where it is a value of its own.
   """
 
   owner: str
@@ -41,14 +44,35 @@ class Field:
   name: str
   default: Any
   text: str
+  form: Any = None
 
-  def told(self, value: float) -> float:
-    """A number of the owner as the table has it."""
+  def told(self, value: Any) -> Any:  # noqa: ANN401
+    """A value of the owner as the table has it."""
+    if self.form is not None:
+      return _short(plain.to_plain(value))
     return math.degrees(value) if self.name.endswith('_rad') else value
 
-  def taken(self, value: float) -> float:
-    """A number of the table as the owner takes it."""
+  def taken(self, value: Any) -> Any:  # noqa: ANN401
+    """A value of the table as the owner takes it."""
+    if self.form is not None:
+      data = _long(self.name, value) if value else None
+      return plain.from_plain(self.form | None, data, self.name)
     return math.radians(value) if self.name.endswith('_rad') else value
+
+
+def _short(data: Values | None) -> str:
+  """Plain data of a value as one text; nothing for none."""
+  return '' if data is None else json.dumps(data, separators=(',', ':'))
+
+
+def _long(name: str, text: str) -> Values:
+  """What `_short` was made of."""
+  try:
+    return json.loads(text)
+  except (TypeError, ValueError) as error:
+    raise plain.PlainError(
+      f'`{name}` must be a value as JSON: {error}: got {text!r}'
+    ) from None
 
 
 @functools.cache
@@ -82,9 +106,10 @@ def _values(
     owner = gestures.v_codebook
   texts, parameters = docs.sentences(owner), inspect.signature(owner).parameters
   for name in names or parameters:
-    value = Field(
-      owner.__name__, part, name, parameters[name].default, texts.get(name, '')
-    )
+    members = kinds.members(kinds.hints(owner).get(name, Any)) if part else ()
+    form = next(filter(dataclasses.is_dataclass, members), None)
+    usual, text = parameters[name].default, texts.get(name, '')
+    value = Field(owner.__name__, part, name, usual, text, form)
     flat = name.replace('_rad', '_deg')
     if owner is gestures.v_codebook and name == 'duration_s':
       flat = 'gesture_s'  # The scenario has a duration of its own.
@@ -186,11 +211,20 @@ def _v_sizes(codebook: gestures.Codebook) -> dict[str, float] | None:
 def parse(name: str, text: str) -> object:
   """The value that a text gives to a field, of the type of its default.
 
+  A log of hover may be given by its file.
+
   Raises:
     ScenarioError: if the name is not known or the text is no such value.
+    LogError: if a file is no log of hover.
   """
   known, error = defaults(), scenario.ScenarioError
   checks.choice('field', name, [*known], error)
+  field = table()[name]
+  if field.form is not None:
+    is_file = text and not text.startswith('{')
+    return field.told(
+      hover_file.read(pathlib.Path(text)) if is_file else field.taken(text)
+    )
   kind = float if known[name] is None else type(known[name])
   try:
     return _WORDS[text.lower()] if kind is bool else kind(text)

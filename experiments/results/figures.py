@@ -18,9 +18,9 @@ from waggle_tasks.experiments.studies import sweep_results
 if TYPE_CHECKING:
   from matplotlib import axes, image
 
+NEEDED = "need matplotlib: pip install 'waggle-tasks[analysis]'"
 MISSING = (
-  'Pictures of the envelope need matplotlib:'
-  " pip install 'waggle-tasks[analysis]'; then `waggle sweep --summary FOLDER`."
+  f'Pictures of the envelope {NEEDED}; then `waggle sweep --summary FOLDER`.'
 )
 _CELL_IN = 0.62, 0.42  # Width and height of a cell.
 _MARGIN_IN = 1.3, 1.15

@@ -68,7 +68,13 @@ def grid(texts: Sequence[str]) -> dict[str, list[object]]:
       raise SweepError(f'`grid` must be NAME=VALUE,VALUE,...: got {text!r}')
     if name == 'seed':
       raise SweepError('`grid` must not name seed: every case has its own')
-    others = [field for field in scenario_fields.defaults() if field != 'seed']
+    if name == 'hover_log':
+      raise SweepError('`grid` must not name hover_log: fly a sweep of each')
+    others = [
+      field
+      for field in scenario_fields.defaults()
+      if field not in ('seed', 'hover_log')
+    ]
     checks.choice('grid', name, others, SweepError)
     if name in out:
       raise SweepError(f'`grid` must name a field once: got {name} again')

@@ -138,11 +138,11 @@ class Broadcast(copies.Uncopied, composer.Task):
     """
     switches.check(self, self.observers, physics)
     self._fleet.place(physics, self._parts.jitter_m, random_state)
-    drift = self._parts.drift
-    self._fleet.let_drift(
-      {name: drift.performer(random_state) for name in self._dancers}
-      | {name: drift.observer(random_state) for name in self._observers}
-    )
+    drift, sways = self._parts.drift, {}
+    for name, home in self._fleet.homes.items():
+      draw = drift.performer if name in self._dancers else drift.observer
+      sways[name] = draw(random_state, home.yaw_rad, self.agreement.rate_hz)
+    self._fleet.let_drift(sways)
     self._clock = clock_lib.Clock(physics, self.agreement)
     for each in self._dancers.values():
       each.vehicle.perform(each.performance.schedule)
@@ -254,6 +254,10 @@ class Broadcast(copies.Uncopied, composer.Task):
     """
     drifts = self._fleet.drifts(self._clock.time_s)
     return {name: place for name, (place, _) in drifts.items()}
+
+  def attitudes_rad(self) -> dict[str, np.ndarray]:
+    """Roll, pitch and yaw that each vehicle's hover gives it, (3,), by name."""
+    return self._fleet.attitudes_rad(self._clock.time_s)
 
   @property
   def contacts(self) -> tuple[tuple[str, str], ...]:

@@ -3,7 +3,8 @@
 A drift is a sum of cosines of random phases, so it is smooth, of zero mean and
 known at any time, with its velocity and acceleration. Their frequencies lie
 evenly in a band, so that it wanders as randomly as the band allows. It is
-added to the reference, and the controller flies it.
+added to the reference, and the controller flies it. A `hover` that was measured
+comes on top: it has all frequencies, and leans.
 """
 
 import dataclasses
@@ -12,7 +13,11 @@ import math
 import numpy as np
 
 from waggle_tasks import errors
-from waggle_tasks.protocol import checks, minimum_jerk
+from waggle_tasks.protocol import agreement, checks, minimum_jerk
+from waggle_tasks.tasks import hover as hover_lib
+from waggle_tasks.tasks import hover_presets
+
+HOVERS = ('none', *hover_presets.PRESETS, 'log')
 
 # Frequencies, times the drift's time: a correlation that is gone after about
 # one time, and waves short enough for half a minute to show their rms.
@@ -40,12 +45,22 @@ class Drift:
     drift_time_s: Time in which a drift becomes another, 0.3 to 10 s; the
       attitude loop of a small vehicle corrects faster, and its position loop
       not much slower, than 1 s.
+    performer_hover: How the performer hovers beside that, as it was measured:
+      one of `HOVERS`.
+    observer_hover: How each observer hovers beside that: one of `HOVERS`.
+    hover_amplitude: By how much the measured hovers are multiplied, 0 to 2.
+    hover_log: The hover of a log of one's own, where one of them is 'log': a
+      `hover.Spectrum`. As a flag, the file of the log.
   """
 
   performer_drift_m: float = 0.0
   observer_drift_m: float = 0.0
   observer_yaw_drift_deg: float = 0.0
   drift_time_s: float = 1.0
+  performer_hover: str = 'none'
+  observer_hover: str = 'none'
+  hover_amplitude: float = 1.0
+  hover_log: hover_lib.Spectrum | None = None
 
   def __post_init__(self) -> None:
     limits = {
@@ -53,8 +68,23 @@ class Drift:
       'observer_drift_m': (0.0, 0.03),
       'observer_yaw_drift_deg': (0.0, 5.0),
       'drift_time_s': (0.3, 10.0),
+      'hover_amplitude': (0.0, 2.0),
     }
     checks.settle_numbers(self, limits, DriftError)
+    self._check_hover()
+
+  def _check_hover(self) -> None:
+    for field in ('performer_hover', 'observer_hover'):
+      checks.choice(field, getattr(self, field), HOVERS, DriftError)
+    names = self.performer_hover, self.observer_hover
+    log = self.hover_log
+    if not isinstance(log, hover_lib.Spectrum | None):
+      raise DriftError(f'`hover_log` must be a hover.Spectrum: got {log!r}')
+    if ('log' in names) != (log is not None):
+      raise DriftError(
+        '`hover_log` must be given where `performer_hover` or `observer_hover`'
+        f" is 'log', and only there: got {'one' if log else 'none'} for {names}"
+      )
 
   @property
   def near_m(self) -> float:
@@ -62,24 +92,94 @@ class Drift:
 
     Four times the root mean square for each of them.
     """
-    return 4 * (
-      self.observer_drift_m + max(self.performer_drift_m, self.observer_drift_m)
+    performer_m = math.hypot(self.performer_drift_m, self._rms_m('performer'))
+    observer_m = math.hypot(self.observer_drift_m, self._rms_m('observer'))
+    return 4 * (observer_m + max(performer_m, observer_m))
+
+  def performer(
+    self,
+    random_state: np.random.RandomState,
+    yaw_rad: float = 0.0,
+    rate_hz: float = agreement.Agreement.rate_hz,
+  ) -> 'Sway':
+    """A performer's drift in one episode.
+
+    Args:
+      random_state: Of the episode.
+      yaw_rad: Its heading.
+      rate_hz: How many references there are in a second.
+    """
+    return self._sway('performer', 0.0, random_state, yaw_rad, rate_hz)
+
+  def observer(
+    self,
+    random_state: np.random.RandomState,
+    yaw_rad: float = 0.0,
+    rate_hz: float = agreement.Agreement.rate_hz,
+  ) -> 'Sway':
+    """An observer's drift in one episode; see `performer`."""
+    turn_rad = math.radians(self.observer_yaw_drift_deg)
+    return self._sway('observer', turn_rad, random_state, yaw_rad, rate_hz)
+
+  def _sway(
+    self,
+    role: str,
+    turn_rad: float,
+    random_state: np.random.RandomState,
+    yaw_rad: float,
+    rate_hz: float,
+  ) -> 'Sway':
+    rms_m = getattr(self, f'{role}_drift_m')
+    rms = np.array([rms_m, rms_m, rms_m, turn_rad])
+    wander = Wander(rms, self.drift_time_s, random_state)
+    spectrum = self._spectrum(role)
+    if spectrum is None:
+      return Sway(wander)
+    drawn = hover_lib.Hover(
+      spectrum, self.hover_amplitude, random_state, yaw_rad, rate_hz
     )
+    return Sway(wander, drawn)
 
-  def performer(self, random_state: np.random.RandomState) -> 'Wander':
-    """A performer's drift in one episode."""
-    return self._wander(self.performer_drift_m, 0.0, random_state)
+  def _spectrum(self, role: str) -> hover_lib.Spectrum | None:
+    """What the hover of a role is drawn from."""
+    name = getattr(self, f'{role}_hover')
+    if not self.hover_amplitude:
+      return None
+    if name == 'log':
+      return self.hover_log
+    preset = hover_presets.PRESETS.get(name)
+    return preset and preset.spectrum
 
-  def observer(self, random_state: np.random.RandomState) -> 'Wander':
-    """An observer's drift in one episode."""
-    yaw_rad = math.radians(self.observer_yaw_drift_deg)
-    return self._wander(self.observer_drift_m, yaw_rad, random_state)
+  def _rms_m(self, role: str) -> float:
+    spectrum = self._spectrum(role)
+    return self.hover_amplitude * spectrum.rms_m if spectrum else 0.0
 
-  def _wander(
-    self, rms_m: float, rms_rad: float, random_state: np.random.RandomState
-  ) -> 'Wander':
-    rms = np.array([rms_m, rms_m, rms_m, rms_rad])
-    return Wander(rms, self.drift_time_s, random_state)
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class Sway:
+  """One vehicle's drift in one episode, and its hover if it has one.
+
+  Attributes:
+    wander: The drift.
+    hover: The hover that comes on top.
+  """
+
+  wander: 'Wander'
+  hover: hover_lib.Hover | None = None
+
+  def at(self, time_s: float) -> tuple[np.ndarray, ...]:
+    """Both, their velocity and their acceleration, (4,) each, at a time.
+
+    The heading is the drift's; that of a hover is part of its `attitude`.
+    """
+    drift = self.wander.at(time_s)
+    if self.hover is None:
+      return drift
+    return (*(drift + np.pad(self.hover.place(time_s), ((0, 0), (0, 1)))),)
+
+  def attitude(self, time_s: float) -> np.ndarray | None:
+    """The hover's roll, pitch and yaw, see `hover_lib.Hover.attitude`."""
+    return None if self.hover is None else self.hover.attitude(time_s)
 
 
 class Wander:

@@ -77,9 +77,9 @@ class Fleet:
         np.array([math.cos(half_rad), 0.0, 0.0, math.sin(half_rad)]),
       )
 
-  def let_drift(self, wanders: Mapping[str, drift_lib.Wander]) -> None:
+  def let_drift(self, sways: Mapping[str, drift_lib.Sway]) -> None:
     """Takes how each vehicle drifts in an episode."""
-    self._wanders = wanders
+    self._sways = sways
 
   def command(
     self,
@@ -98,12 +98,18 @@ class Fleet:
       motion: Where it should be.
       turn_rad: Its heading, counted from where it began.
     """
-    drift = self._wanders[name].at(middle_s)
+    sway = self._sways[name]
+    drift = sway.at(middle_s)
     place_m, velocity_mps, acceleration_mps2 = (
       each + off[:3] for each, off in zip(motion, drift, strict=True)
     )
     self._controllers[name].command(
-      physics, place_m, velocity_mps, acceleration_mps2, turn_rad + drift[0][3]
+      physics,
+      place_m,
+      velocity_mps,
+      acceleration_mps2,
+      turn_rad + drift[0][3],
+      sway.attitude(middle_s),
     )
 
   def positions_m(self, physics: mjcf.Physics) -> dict[str, np.ndarray]:
@@ -119,7 +125,15 @@ class Fleet:
   def drifts(self, time_s: float) -> Offsets:
     """Drift and its velocity at a time, (3,) each, by vehicle."""
     out = {}
-    for name, wander in self._wanders.items():
-      place, rate, _ = wander.at(time_s)
+    for name, sway in self._sways.items():
+      place, rate, _ = sway.at(time_s)
       out[name] = place[:3], rate[:3]
+    return out
+
+  def attitudes_rad(self, time_s: float) -> dict[str, np.ndarray]:
+    """Roll, pitch and yaw of the hover at a time, (3,), by vehicle."""
+    out = {}
+    for name, sway in self._sways.items():
+      attitude = sway.attitude(time_s)
+      out[name] = np.zeros(3) if attitude is None else attitude[0]
     return out
