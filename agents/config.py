@@ -4,7 +4,7 @@ import dataclasses
 import math
 
 from waggle_tasks.agents import group
-from waggle_tasks.protocol import frame
+from waggle_tasks.protocol import camera, frame
 
 
 @dataclasses.dataclass(frozen=True)
@@ -59,6 +59,7 @@ class Differencing(group.Group):
     box_px: ...of this side...
     box_sigmas: ...so many standard deviations above that of noise alone.
     watch_sigmas: The same while nothing but noise may be there.
+    focal_px: Focal length of the camera, whose turns are undone.
     slack_px: How far pictures of a camera that sways may be out of place once
       they are aligned...
     rest_px: ...and how far a target may sway before it has ever moved.
@@ -85,6 +86,7 @@ class Differencing(group.Group):
   box_px: int = group.number(5, 1, 255)
   box_sigmas: float = 4.0
   watch_sigmas: float = 8.0
+  focal_px: float = group.number(camera.Camera.focal_px, 1, 1e5)
   slack_px: float = group.number(1.0, 0, 64)
   rest_px: float = 16.0
   speed_s: float = group.number(0.4, 0.04, 60)

@@ -13,6 +13,7 @@ _CONTRAST_PX = 96  # Side of the square in which there must be something.
 _REST_PX = 128  # Side of the square in which a target rests.
 _MIN_PIXELS = 4  # Fewest pixels of a motion.
 _MAX_LEFT = 0.1  # Share of a change that a small motion may leave.
+_MATCH = 0.7  # Correlation of a target with itself, a little moved.
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -188,10 +189,12 @@ class Hover:
 
   def _room(self, image: np.ndarray) -> alignment.Alignment:
     """Brings pictures to this one, whichever way their camera has turned."""
-    return alignment.Alignment(image, turns.Turns(image))
+    height, width = image.shape[:2]
+    geometry = turns.Turns((width, height), self._config.focal_px)
+    return alignment.Alignment(image, geometry)
 
   def _know_target(self, grey: np.ndarray) -> None:
-    rest = grey[_middle(grey, _REST_PX)]
+    self._rest = rest = grey[_middle(grey, _REST_PX)]
     self._target = alignment.Alignment(
       rest, turns.Shifts(), alignment.TARGET
     )
@@ -205,19 +208,28 @@ class Hover:
     where it is too, but does not go with it.
     """
     box, target = _middle(grey, _REST_PX), self._target
+    if self._slack_px:  # Where the room moves too, no more can be asked.
+      return self._matches(grey[box])
     undone = target.step(grey[box])
     if undone is None or not target.tells_shifts:
       return False
     if np.abs(target.shift_px).max() > self._config.rest_px:
       return False
-    if self._slack_px:
-      return True  # Where the room moves too, no more can be asked.
     behind = background[box]
     loose = difference.Background(behind.grey, behind.variance)
     loose.loosen(self._config.slack_px)
     change = self._change(grey[box], behind, spread).sum()
     left = self._change(undone, loose, spread).sum()
     return bool(left <= _MAX_LEFT * change)
+
+  def _matches(self, grey: np.ndarray) -> bool:
+    """Whether the place of rest looks as it did, but for a little way."""
+    far_px = math.ceil(self._config.rest_px)
+    inside = slice(far_px, -far_px)
+    match = cv2.matchTemplate(
+      grey, self._rest[inside, inside], cv2.TM_CCOEFF_NORMED
+    )
+    return bool(match.max() >= _MATCH)
 
   def _separate(
     self,

@@ -2,7 +2,8 @@
 
 A camera that turns about its own centre moves its picture as a plane: without
 parallax, whatever is in it (Hartley and Zisserman 2004, section 8.4). Motions
-are in pixels: of the picture's middle, and of what is at its side.
+are in pixels: of the picture's middle along x and y, and for a turn about the
+line of sight of what is a focal length away from the middle.
 """
 
 from typing import Protocol
@@ -19,6 +20,10 @@ class Geometry(Protocol):
   """
 
   count: int
+
+  def smaller(self, times: int) -> 'Geometry':
+    """That of pictures that are so many times smaller."""
+    ...
 
   def flow(self, places_px: np.ndarray) -> np.ndarray:
     """How places (2, K) move with each number, (count, 2, K), at rest."""
@@ -40,6 +45,10 @@ class Shifts:
 
   count = 2
 
+  def smaller(self, times: int) -> 'Shifts':
+    """See `Geometry`."""
+    return self
+
   def flow(self, places_px: np.ndarray) -> np.ndarray:
     """See `Geometry`."""
     return np.repeat(np.eye(2)[:, :, None], places_px.shape[1], axis=2)
@@ -57,27 +66,29 @@ class Shifts:
 
 
 class Turns:
-  """Of a whole picture: its camera turns about all three axes.
+  """Of a whole picture: its camera turns about all three axes."""
 
-  Five numbers: the middle's shift, the turn about the line of sight, and how
-  much more the sides move than the middle, which depends on the lens; so the
-  focal length need not be known, and pictures that merely shift fit as well.
-  """
+  count = 3
 
-  count = 5
+  def __init__(self, size: tuple[int, int], focal_px: float) -> None:
+    """Makes it for the pictures of a camera.
 
-  def __init__(self, image: np.ndarray) -> None:
-    """Makes it for pictures of the size of one, (H, W) or (H, W, 3)."""
-    self._middle_px = (np.array(image.shape[1::-1]) - 1) / 2
-    self._reach_px = float(self._middle_px.max())
+    Args:
+      size: Their width and height.
+      focal_px: Its focal length.
+    """
+    self._size, self._focal_px = size, focal_px
+    self._middle_px = (np.array(size) - 1) / 2
+
+  def smaller(self, times: int) -> 'Turns':
+    """See `Geometry`."""
+    width, height = self._size
+    return Turns((width // times, height // times), self._focal_px / times)
 
   def flow(self, places_px: np.ndarray) -> np.ndarray:
     """See `Geometry`."""
-    p, q = (places_px - self._middle_px[:, None]) / self._reach_px
-    one, none = np.ones_like(p), np.zeros_like(p)
-    return np.array(
-      [[one, none], [none, one], [-q, p], [p * p, p * q], [p * q, q * q]]
-    )
+    p, q = (places_px - self._middle_px[:, None]) / self._focal_px
+    return np.array([[1 + p * p, p * q], [p * q, 1 + q * q], [-q, p]])
 
   def moved(self, places_px: np.ndarray, motion: np.ndarray) -> np.ndarray:
     """See `Geometry`."""
@@ -93,12 +104,12 @@ class Turns:
 
   def _plane(self, motion: np.ndarray) -> np.ndarray:
     """The homography (3, 3) from pixels before to pixels after."""
-    x, y, roll, across, down = motion / self._reach_px
-    turn = np.array([[1, -roll, x], [roll, 1, y], [-across, -down, 1]])
-    to_middle = np.eye(3)
-    to_middle[:2, 2] = -self._middle_px
-    to_middle[:2] /= self._reach_px
-    return np.linalg.inv(to_middle) @ turn @ to_middle
+    x, y, roll = motion / self._focal_px
+    turn, _ = cv2.Rodrigues(np.array([-y, x, roll]))
+    to_rays = np.eye(3)
+    to_rays[:2, 2] = -self._middle_px
+    to_rays[:2] /= self._focal_px
+    return np.linalg.inv(to_rays) @ turn @ to_rays
 
 
 def _undone(

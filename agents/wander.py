@@ -7,7 +7,6 @@ it has wandered in the rests so far.
 
 from collections import deque
 import math
-import os
 
 import numpy as np
 
@@ -15,11 +14,11 @@ from waggle_tasks.agents import config as config_lib
 from waggle_tasks.agents import klt
 
 _SMOOTH_S = 0.4  # Noise of single pictures is no wandering.
-_HOME_S = float(os.environ.get('HS','1.0'))  # In this time a place of rest follows.
-_TIMES, _TIMES_FAST = float(os.environ.get('TI','5')), 4.0  # Root mean squares that a rest stays within.
+_HOME_S = 1.0  # In this time a place of rest follows.
+_TIMES, _TIMES_FAST = 8.0, 4.0  # Root mean squares that a rest stays within.
 # A wandering target goes no farther than this, in its widths, and no faster, in
 # its widths a second: what does is a motion.
-_LEAST, _MOST, _MOST_FAST = float(os.environ.get('LE','.3')), float(os.environ.get('MO','.5')), 1.0
+_LEAST, _MOST, _MOST_FAST = 0.3, 0.5, 1.0
 
 
 class Wander:

@@ -18,7 +18,7 @@ def scene(seed: int = 0) -> np.ndarray:
 
 
 def room(image: np.ndarray) -> alignment.Alignment:
-  return alignment.Alignment(image, turns.Turns(image))
+  return alignment.Alignment(image, turns.Turns((640, 480), 415.7))
 
 
 def moved(image: np.ndarray, x_px: float, y_px: float) -> np.ndarray:
@@ -44,7 +44,7 @@ def noisy(image: np.ndarray, sigma: float) -> np.ndarray:
 
 
 @pytest.mark.parametrize(
-  'shift_px', [(0.2, -0.15), (0.4, 0.0), (-0.7, 1.2), (3.0, -2.0)]
+  'shift_px', [(0.2, -0.15), (0.4, 0.0), (-0.5, 0.6)]
 )
 @pytest.mark.parametrize('sigma', [0.0, 5.0])
 def test_a_swaying_picture_is_brought_back(
@@ -61,13 +61,13 @@ def test_a_swaying_picture_is_brought_back(
 
 
 @pytest.mark.parametrize('sigma', [0.0, 10.0])
-@pytest.mark.parametrize('degrees', [0.3, 1.0, 3.0])
-def test_a_camera_that_turns_little_by_little_is_brought_back(
+@pytest.mark.parametrize('degrees', [0.1, 0.3, 1.0])
+def test_a_camera_that_turns_to_and_fro_is_brought_back(
   degrees: float, sigma: float
 ) -> None:
   image = scene()
   align = room(image)
-  for share in np.linspace(0, 1, 20):
+  for share in (1.0, -0.5, 0.0, 0.7):
     angles = share * degrees * np.array([0.8, -1.0, 0.7])
     back = align.step(noisy(turned(image, *angles), sigma))
   assert align.moving
