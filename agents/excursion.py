@@ -67,7 +67,9 @@ class ExcursionSegmenter:
       return None
     self._path.append(track)
     slow = track.speed_px_s < self.wander.slow_px_s
-    self.returned = back = slow and bool(way_px <= self.wander.back_px)
+    self.returned = slow and bool(way_px <= self.wander.back_px)
+    near = self.wander.sways or bool(way_px <= self.wander.away_px)
+    back = self.returned and near
     self._slow_since_s = _since(self._slow_since_s, slow, now_s)
     self._back_since_s = _since(self._back_since_s, back, now_s)
     if config_lib.lasted(self._back_since_s, now_s, config.off_s) and (

@@ -16,6 +16,7 @@ from waggle_tasks.agents import klt
 _SMOOTH_S = 0.4  # Noise of single pictures is no wandering.
 _HOME_S = 1.0  # In this time a place of rest follows.
 _TIMES, _TIMES_FAST = 8.0, 4.0  # Root mean squares that a rest stays within.
+_LITTLE, _LITTLE_PX = 0.0075, 0.25  # In widths, or pixels: less is none.
 # A wandering target goes no farther than this, in its widths, and no faster, in
 # its widths a second: what does is a motion.
 _LEAST, _MOST, _MOST_FAST = 0.3, 0.5, 1.0
@@ -28,8 +29,7 @@ class Wander:
     home_px: (2,) where the target rests.
     sways: Whether it wanders so far that it counts.
     away_px: How far from home it has left it...
-    back_px: ...and how near it is back: while it was away, home may have
-      wandered on.
+    back_px: ...and how near it may be back: meanwhile home may have wandered.
     slow_px_s: Below which speed it rests.
   """
 
@@ -47,17 +47,22 @@ class Wander:
     self._least_px = config.away_px(width_px)
     self._least_px_s = config.slow_px_s(width_px)
     self._ways = self._speeds = self._time_s = 0.0
-    self.away_px = self.back_px = self._least_px
+    self.away_px = self._least_px
+    self.back_px = max(_MOST * width_px, self._least_px)
     self.slow_px_s = self._least_px_s
     self.sways = False
     self._recent: deque[tuple[klt.Track, np.ndarray, float]] = deque()
-    self.settle(home_px)
+    self._place_px = self._mean_px = self.home_px = home_px
+    self._last_s = math.nan
 
   def settle(self, home_px: np.ndarray) -> None:
     """Takes where a new rest is, (2,)."""
+    way_px = home_px - self.home_px
     self.home_px = self._place_px = self._mean_px = home_px
     self._last_s = math.nan
     self._recent.clear()
+    if np.hypot(*way_px) > self.away_px:
+      self._learn(way_px, 0.0, _HOME_S)
 
   def rest(self, track: klt.Track, past_s: float) -> None:
     """Takes a target that is seen at rest, unless it leaves it soon.
@@ -81,18 +86,21 @@ class Wander:
     self, track: klt.Track, way_px: np.ndarray, elapsed_s: float
   ) -> None:
     self._mean_px = _nearer(self._mean_px, track.centre_px, elapsed_s, _HOME_S)
-    self._ways += elapsed_s * float(way_px @ way_px) / 2
-    self._speeds += elapsed_s * track.speed_px_s**2
-    self._time_s += elapsed_s
+    self._learn(way_px, track.speed_px_s, elapsed_s)
+
+  def _learn(self, way_px: np.ndarray, speed_px_s: float, time_s: float) -> None:
+    """Takes how far from home it was for a time, and how fast."""
+    self._ways += time_s * float(way_px @ way_px) / 2
+    self._speeds += time_s * speed_px_s**2
+    self._time_s += time_s
     usual_px = math.sqrt(self._ways / self._time_s)
-    self.sways = _TIMES * usual_px > self._least_px
+    self.sways = usual_px > max(_LITTLE * self._width_px, _LITTLE_PX)
     if self.sways:
       usual_px_s = math.sqrt(self._speeds / self._time_s)
       self.home_px = self._mean_px
       most_px, most_px_s = _MOST * self._width_px, _MOST_FAST * self._width_px
       away_px = max(_TIMES * usual_px, _LEAST * self._width_px)
       self.away_px = max(min(away_px, most_px), self._least_px)
-      self.back_px = max(most_px, self._least_px)
       fast_px_s = min(_TIMES_FAST * usual_px_s, most_px_s)
       self.slow_px_s = max(fast_px_s, self._least_px_s)
 
