@@ -101,7 +101,11 @@ class Alignment:
     if not self._useful:
       return image
     change = self._change(image)
-    if self._scene.banded and not self._sways and levels.scatter(change) >= _STILL_LEVELS:
+    if (
+      self._scene.banded
+      and not self._sways
+      and levels.scatter(change) >= _STILL_LEVELS
+    ):
       image = self._bands.undo(difference.grey(image))
       change = self._change(image)
     if self._fit is self._nothing and self._as_it_was(change):

@@ -4,6 +4,7 @@ import dataclasses
 import math
 
 from waggle_tasks.agents import group
+from waggle_tasks.agents import wandering as wandering_lib
 from waggle_tasks.protocol import camera, frame
 
 
@@ -63,8 +64,7 @@ class Differencing(group.Group):
     slack_px: How far pictures of a camera that sways may be out of place once
       they are aligned...
     rest_px: ...and how far a target may sway before it has ever moved.
-    speed_s: Over how long speed is measured; as long again in noise, and when
-      the camera sways.
+    speed_s: Over how long speed is measured; longer in noise and while swaying.
     speed_noise: Up to this it is none, in grey levels.
     gate_widths: Half the side of the square around the target in which it is
       looked for, in apparent widths...
@@ -227,8 +227,8 @@ class Stillness(group.Group):
     jump_s: ...and within how long it must be back at rest.
     in_sight_s: How long the target must be seen at rest without a break before
       a null is confirmed.
-    max_stale_s: How long the images of a camera that shimmers may be stale in
-      the final rest; 0, as in the paper, asks for no life.
+    max_stale_s: How long a camera that shimmers may show stale images in the
+      final rest; 0, as in the paper, asks for no life.
     bridges: Whether a rest goes on after a loss of sight in which, by the
       agreed clock, no gesture can hide; else, as in the paper, it begins anew.
   """
@@ -260,6 +260,7 @@ class Config:
   Attributes:
     tracking: How the target is followed; the type picks the tracker...
     motion: ...and how its track is cut, which goes with it.
+    wandering: What a rest of a target that wanders may be, for an Excursion.
     recognition: When a path is a symbol.
     stillness: When stillness is a null.
     framing: Which nulls a message must have.
@@ -268,6 +269,7 @@ class Config:
 
   tracking: Tracking | Differencing = Tracking()
   motion: Motion | Excursion = Motion()
+  wandering: wandering_lib.Wandering = wandering_lib.Wandering()
   recognition: Recognition = Recognition()
   stillness: Stillness = Stillness()
   framing: frame.Rules = frame.Rules()
@@ -277,7 +279,6 @@ class Config:
     group.check_kinds(self)
 
 
-# Trackers and templates are chosen apart from each other.
 KLT = Config()
 KLT_BANK = Config(views=Views())
 ABSOLUTE = Config(
@@ -293,7 +294,7 @@ VIEW_BANK = dataclasses.replace(ABSOLUTE, views=Views())
 def lasted(since_s: float, now_s: float, duration_s: float) -> bool:
   """Whether a duration is over, to a microsecond.
 
-  Times of images are multiples of a frame in floating point, and so are most
-  durations; exact comparison would be decided by rounding.
+  Times of images are multiples of a frame in floating point: exact comparison
+  would be decided by rounding.
   """
   return now_s - since_s > duration_s - 1e-6 and math.isfinite(since_s)

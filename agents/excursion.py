@@ -6,7 +6,7 @@ import math
 import numpy as np
 
 from waggle_tasks.agents import config as config_lib
-from waggle_tasks.agents import klt, segmenter, wander
+from waggle_tasks.agents import klt, segmenter, wander, wandering
 
 _MEAN_S = 0.08  # To either side.
 _STEP = 0.02  # Of the span.
@@ -26,6 +26,7 @@ class ExcursionSegmenter:
     config: config_lib.Excursion,
     home_px: np.ndarray,
     width_px: float,
+    wanders: wandering.Wandering = wandering.Wandering(),
     least_s: float = 0.0,
   ) -> None:
     """Begins with a target at rest.
@@ -34,13 +35,20 @@ class ExcursionSegmenter:
       config: When a gesture begins and ends.
       home_px: (2,) where it rests.
       width_px: How wide it is.
+      wanders: What a rest of a target that wanders may be.
       least_s: How long a gesture of a target that wanders lasts at least, by
         the agreed clock: one may pass its home slowly in its middle.
     """
     self._config = config
     self._width_px = width_px
     self._least_s = least_s
-    self.wander = wander.Wander(config, home_px, width_px)
+    self.wander = wander.Wander(
+      wanders,
+      home_px,
+      width_px,
+      config.away_px(width_px),
+      config.slow_px_s(width_px),
+    )
     self._begin()
 
   def _begin(self) -> None:

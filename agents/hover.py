@@ -195,9 +195,7 @@ class Hover:
 
   def _know_target(self, grey: np.ndarray) -> None:
     self._rest = rest = grey[_middle(grey, _REST_PX)]
-    self._target = alignment.Alignment(
-      rest, turns.Shifts(), alignment.TARGET
-    )
+    self._target = alignment.Alignment(rest, turns.Shifts(), alignment.TARGET)
 
   def _hardly_moved(
     self, grey: np.ndarray, background: difference.Background, spread: float

@@ -10,16 +10,11 @@ import math
 
 import numpy as np
 
-from waggle_tasks.agents import config as config_lib
-from waggle_tasks.agents import klt
+from waggle_tasks.agents import klt, wandering
 
 _SMOOTH_S = 0.4  # Noise of single pictures is no wandering.
 _HOME_S = 1.0  # In this time a place of rest follows.
-_TIMES, _TIMES_FAST = 8.0, 4.0  # Root mean squares that a rest stays within.
 _LITTLE, _LITTLE_PX = 0.0075, 0.25  # In widths, or pixels: less is none.
-# A wandering target goes no farther than this, in its widths, and no faster, in
-# its widths a second: what does is a motion.
-_LEAST, _MOST, _MOST_FAST = 0.3, 0.5, 1.0
 
 
 class Wander:
@@ -34,22 +29,27 @@ class Wander:
   """
 
   def __init__(
-    self, config: config_lib.Excursion, home_px: np.ndarray, width_px: float
+    self,
+    config: wandering.Wandering,
+    home_px: np.ndarray,
+    width_px: float,
+    away_px: float,
+    slow_px_s: float,
   ) -> None:
     """Begins with a target that was never seen to wander.
 
     Args:
-      config: How far and how fast a target that is at rest may be at least.
+      config: What its rest may be.
       home_px: (2,) where it rests.
       width_px: How wide it is.
+      away_px: How far from home a target that does not wander has left it.
+      slow_px_s: Below which speed such a one rests.
     """
-    self._width_px = width_px
-    self._least_px = config.away_px(width_px)
-    self._least_px_s = config.slow_px_s(width_px)
+    self._config, self._width_px = config, width_px
+    self._least_px, self._least_px_s = away_px, slow_px_s
     self._ways = self._speeds = self._time_s = 0.0
-    self.away_px = self._least_px
-    self.back_px = max(_MOST * width_px, self._least_px)
-    self.slow_px_s = self._least_px_s
+    self.away_px, self.slow_px_s = away_px, slow_px_s
+    self.back_px = max(config.most_wander_widths * width_px, away_px)
     self.sways = False
     self._recent: deque[tuple[klt.Track, np.ndarray, float]] = deque()
     self._place_px = self._mean_px = self.home_px = home_px
@@ -88,7 +88,9 @@ class Wander:
     self._mean_px = _nearer(self._mean_px, track.centre_px, elapsed_s, _HOME_S)
     self._learn(way_px, track.speed_px_s, elapsed_s)
 
-  def _learn(self, way_px: np.ndarray, speed_px_s: float, time_s: float) -> None:
+  def _learn(
+    self, way_px: np.ndarray, speed_px_s: float, time_s: float
+  ) -> None:
     """Takes how far from home it was for a time, and how fast."""
     self._ways += time_s * float(way_px @ way_px) / 2
     self._speeds += time_s * speed_px_s**2
@@ -96,20 +98,21 @@ class Wander:
     usual_px = math.sqrt(self._ways / self._time_s)
     self.sways = usual_px > max(_LITTLE * self._width_px, _LITTLE_PX)
     if self.sways:
-      usual_px_s = math.sqrt(self._speeds / self._time_s)
+      config, usual_px_s = self._config, math.sqrt(self._speeds / self._time_s)
       self.home_px = self._mean_px
-      most_px, most_px_s = _MOST * self._width_px, _MOST_FAST * self._width_px
-      away_px = max(_TIMES * usual_px, _LEAST * self._width_px)
-      self.away_px = max(min(away_px, most_px), self._least_px)
-      fast_px_s = min(_TIMES_FAST * usual_px_s, most_px_s)
+      far_px = config.wander_widths * self._width_px
+      far_px = max(config.wander_times * usual_px, far_px)
+      self.away_px = max(min(far_px, self.back_px), self._least_px)
+      most_px_s = config.most_wander_widths_s * self._width_px
+      fast_px_s = min(config.wander_speeds * usual_px_s, most_px_s)
       self.slow_px_s = max(fast_px_s, self._least_px_s)
 
   def prime(self, tracks: list[klt.Track], lead_s: float) -> None:
     """Takes the tracks of a target that has just left, up to a lead before."""
-    far_px = _MOST * self._width_px
     left_s = math.inf
     for track in tracks[::-1]:
-      if track.valid and np.hypot(*(track.centre_px - self.home_px)) < far_px:
+      way_px = np.hypot(*(track.centre_px - self.home_px))
+      if track.valid and way_px < self.back_px:
         break
       left_s = track.time_s
     home_px = self.home_px

@@ -11,6 +11,7 @@ from waggle_tasks.agents import (
   klt,
   segmenter,
   wander,
+  wandering,
 )
 from waggle_tasks.agents import config as config_lib
 
@@ -86,10 +87,11 @@ class AbsoluteWatcher:
     self,
     tracking: config_lib.Differencing,
     motion: config_lib.Excursion,
+    wanders: wandering.Wandering,
     least_s: float,
   ) -> None:
     self._tracker = absolute.AbsoluteTracker(tracking)
-    self._motion, self._least_s = motion, least_s
+    self._motion, self._wanders, self._least_s = motion, wanders, least_s
     self._segmenter: excursion.ExcursionSegmenter | None = None
     self.gave_up = False
 
@@ -120,7 +122,11 @@ class AbsoluteWatcher:
       return tracks[-1], None
     if self._segmenter is None:
       self._segmenter = excursion.ExcursionSegmenter(
-        self._motion, ghost.anchor_px, ghost.width_px, self._least_s
+        self._motion,
+        ghost.anchor_px,
+        ghost.width_px,
+        self._wanders,
+        self._least_s,
       )
       self._segmenter.wander.prime(tracks, self._motion.lead_s)
     segments = [self._segmenter.step(track) for track in tracks]
@@ -142,7 +148,7 @@ def make(config: config_lib.Config, least_s: float = 0.0) -> Watcher:
       config_lib.Differencing() as tracking,
       config_lib.Excursion() as motion,
     ):
-      return AbsoluteWatcher(tracking, motion, least_s)
+      return AbsoluteWatcher(tracking, motion, config.wandering, least_s)
     case config_lib.Tracking() as tracking, config_lib.Motion() as motion:
       return FlowWatcher(tracking, motion)
   raise group.ReceiverError(

@@ -43,9 +43,7 @@ def noisy(image: np.ndarray, sigma: float) -> np.ndarray:
   return np.clip(np.rint(image + noise), 0, 255).astype(np.uint8)
 
 
-@pytest.mark.parametrize(
-  'shift_px', [(0.2, -0.15), (0.4, 0.0), (-0.5, 0.6)]
-)
+@pytest.mark.parametrize('shift_px', [(0.2, -0.15), (0.4, 0.0), (-0.5, 0.6)])
 @pytest.mark.parametrize('sigma', [0.0, 5.0])
 def test_a_swaying_picture_is_brought_back(
   shift_px: tuple[float, float], sigma: float
