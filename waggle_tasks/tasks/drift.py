@@ -148,7 +148,7 @@ class Drift:
     if name == 'log':
       return self.hover_log
     preset = hover_presets.PRESETS.get(name)
-    return preset and preset.spectrum
+    return None if preset is None else preset.spectrum
 
   def _rms_m(self, role: str) -> float:
     spectrum = self._spectrum(role)
