@@ -55,6 +55,15 @@ CASES = {
   '--half_width_m=0': '`half_width_m` must be between 0.01 and 1.2',
   '--start_height_m=9': '`start_height_m` must be between 0.01 and 2',
   '--gesture_s=0': 'duration_s` must be between 0.1 and 60: got 0.0',
+  '--performer_hover=mocup': "got 'mocup'. Did you mean mocap",
+  '--observer_hover=mocap --hover_amplitude=-1': (
+    '`hover_amplitude` must be between 0 and 2: got -1.0'
+  ),
+  '--observer_hover=log': '`hover_log` must be given where',
+  '--hover_log=none.csv': 'none.csv is no file',
+  '--observer_hover=mocap --layout=line --spacing_m=0.25': (
+    'observer_1 and observer_2 must start at least'
+  ),
   '--half_span_deg=180': 'observer_1 and observer_3 must start at least',
   '--layout=line --spacing_m=0.1': 'observer_1 and observer_2 must start',
   '--layout=line --observers=64': '`pose` of observer_1 must lie in the room',
@@ -73,6 +82,7 @@ NUMBERS = (
   'stop_s',
   'duration_s',
   'brightness',
+  'hover_amplitude',
   'initial_hover_s',
   'settle_s',
   'gap_s',

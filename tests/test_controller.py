@@ -107,6 +107,18 @@ def test_a_small_attitude_is_flown_beside_any_turn(
   np.testing.assert_allclose(physics.data.qpos[:3], PLACE_M, atol=1e-3)
 
 
+def test_a_level_reference_is_what_it_has_always_been(
+  scene: Scene, hold: Hold
+) -> None:
+  """To the last bit: results of before are made again."""
+  physics, _ = scene
+  before = physics.model.site_quat.copy(), physics.model.site_sameframe.copy()
+  hold(1.0, PLACE_M, 0.7)
+  assert physics.data.ctrl[3:].tolist() == [0.0, 0.0, 0.7]
+  np.testing.assert_array_equal(before[0], physics.model.site_quat)
+  np.testing.assert_array_equal(before[1], physics.model.site_sameframe)
+
+
 def test_a_push_is_recovered_from(scene: Scene, hold: Hold) -> None:
   physics, _ = scene
   hold(0.4, PLACE_M)

@@ -134,6 +134,10 @@ BAD = {
     changed(position_m=lambda each: each[:, :2]),
     r'must be \(2400, 3\) numbers, .*: got \(2400, 2\)',
   ),
+  'no attitude': (
+    changed(roll_pitch_yaw_deg=np.zeros_like),
+    r'`roll_pitch_yaw_deg` must change, .*: got \[0.0, 0.0, 0.0\] in all 2400',
+  ),
   'windows': (
     changed(time_s=lambda each: each.reshape(6, 400)),
     r'`time_s` must be \(T,\) numbers: got \(6, 400\)',

@@ -21,8 +21,11 @@ DISTURBANCES = {
   'fixed sun': {'appearance': Look(sun='fixed')},
   'moving sun': {'appearance': Look(sun='moving')},
   'drift': {'drift': drift.Drift(0.005, 0.005, 0.3)},
+  'hover': {
+    'drift': drift.Drift(performer_hover='mocap', observer_hover='mocap')
+  },
   'all': {
-    'drift': drift.Drift(0.005, 0.005, 0.3),
+    'drift': drift.Drift(0.005, 0.005, 0.3, observer_hover='lighthouse'),
     'appearance': Look(floor='clutter', walls='clutter', sun='moving'),
     'surroundings': Around(4, 5.0),
   },

@@ -52,9 +52,8 @@ def read(
 
 def values() -> dict[str, Any]:
   """What the flags say, by the names of `scenario_fields`."""
-  out = {}
-  for name in scenario_fields.defaults():
-    value = flags.FLAGS[name].value
-    is_text = isinstance(value, str)  # Of what may be more than text.
-    out[name] = scenario_fields.parse(name, value) if is_text else value
+  out = {name: flags.FLAGS[name].value for name in scenario_fields.defaults()}
+  for name, value in out.items():
+    if isinstance(value, str):  # Which may stand for more than text.
+      out[name] = scenario_fields.parse(name, value)
   return out

@@ -253,7 +253,7 @@ class Broadcast(copies.Uncopied, composer.Task):
     What a vehicle was told to do is judged without it: nobody is told of it.
     """
     drifts = self._fleet.drifts(self._clock.time_s)
-    return {name: place for name, (place, _) in drifts.items()}
+    return {name: place.copy() for name, (place, _) in drifts.items()}
 
   def attitudes_rad(self) -> dict[str, np.ndarray]:
     """Roll, pitch and yaw that each vehicle's hover gives it, (3,), by name."""

@@ -148,7 +148,7 @@ class Drift:
     if name == 'log':
       return self.hover_log
     preset = hover_presets.PRESETS.get(name)
-    return preset and preset.spectrum
+    return None if preset is None else preset.spectrum
 
   def _rms_m(self, role: str) -> float:
     spectrum = self._spectrum(role)
@@ -175,7 +175,9 @@ class Sway:
     drift = self.wander.at(time_s)
     if self.hover is None:
       return drift
-    return (*(drift + np.pad(self.hover.place(time_s), ((0, 0), (0, 1)))),)
+    both = np.array(drift)
+    both[:, :3] += self.hover.place(time_s)
+    return tuple(both)
 
   def attitude(self, time_s: float) -> np.ndarray | None:
     """The hover's roll, pitch and yaw, see `hover_lib.Hover.attitude`."""

@@ -80,6 +80,7 @@ class Fleet:
   def let_drift(self, sways: Mapping[str, drift_lib.Sway]) -> None:
     """Takes how each vehicle drifts in an episode."""
     self._sways = sways
+    self._drifts: tuple[float, Offsets] = math.nan, {}
 
   def command(
     self,
@@ -124,11 +125,13 @@ class Fleet:
 
   def drifts(self, time_s: float) -> Offsets:
     """Drift and its velocity at a time, (3,) each, by vehicle."""
-    out = {}
-    for name, sway in self._sways.items():
-      place, rate, _ = sway.at(time_s)
-      out[name] = place[:3], rate[:3]
-    return out
+    if self._drifts[0] != time_s:  # Several ask in one frame.
+      sways = {name: sway.at(time_s) for name, sway in self._sways.items()}
+      offsets = {
+        name: (place[:3], rate[:3]) for name, (place, rate, _) in sways.items()
+      }
+      self._drifts = time_s, offsets
+    return self._drifts[1]
 
   def attitudes_rad(self, time_s: float) -> dict[str, np.ndarray]:
     """Roll, pitch and yaw of the hover at a time, (3,), by vehicle."""

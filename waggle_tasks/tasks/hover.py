@@ -152,23 +152,28 @@ class _Waves:
     self, strength: np.ndarray, rate: np.ndarray, phase: np.ndarray
   ) -> None:
     """Takes the waves: (N, ...) each, of N sums."""
-    self._strength, self._rate, self._phase = (
+    strength, self._rate, self._phase = (
       each.reshape(len(each), -1) for each in (strength, rate, phase)
     )
+    # Of the value and of its two derivatives.
+    self._strengths = [strength * self._rate**order for order in range(3)]
 
   def at(self, time_s: float) -> np.ndarray:  # (3, N)
     """The sums and their first and second derivatives at a time."""
     angle = self._rate * time_s + self._phase
-    wave = self._strength * np.cos(angle)
-    slope = -self._strength * np.sin(angle) * self._rate
-    value, rate = wave.sum(axis=1), slope.sum(axis=1)
-    second_rate = -(wave * self._rate**2).sum(axis=1)
+    cosine, sine = np.cos(angle), np.sin(angle)
+    value, falling, second_falling = (
+      np.einsum('nw,nw->n', each, wave)
+      for each, wave in zip(
+        self._strengths, (cosine, sine, cosine), strict=True
+      )
+    )
     grown, growth, second = minimum_jerk.progress(time_s, GROWTH_S)
-    return np.stack(
+    return np.array(
       [
         grown * value,
-        grown * rate + growth * value,
-        grown * second_rate + 2 * growth * rate + second * value,
+        growth * value - grown * falling,
+        second * value - 2 * growth * falling - grown * second_falling,
       ]
     )
 

@@ -92,6 +92,11 @@ def _columns(name: str, values: np.ndarray, count: int) -> np.ndarray:
       f'`{name}` must be ({count}, 3) numbers, a line for each of `time_s`:'
       f' got {array.shape}'
     )
+  if not np.ptp(array, axis=0).any():  # Of a link that did not carry it.
+    raise LogError(
+      f'`{name}` must change, as it does in any hover: got {array[0].tolist()}'
+      f' in all {count} samples'
+    )
   return array
 
 
