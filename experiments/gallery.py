@@ -19,7 +19,7 @@ from waggle_tasks.experiments.machine import files
 from waggle_tasks.experiments.pages import rooms
 from waggle_tasks.experiments.record import folders
 from waggle_tasks.experiments.results import envelope, figures, png
-from waggle_tasks.experiments.studies import sweep_results
+from waggle_tasks.experiments.studies import case_rows
 
 _OUTPUT = flags.DEFINE_string(
   'output', 'docs/gallery', 'Folder of the pictures; those in it are replaced.'
@@ -54,7 +54,7 @@ def _envelope(
   folder: pathlib.Path, sweeps: Sequence[str]
 ) -> list[pathlib.Path]:
   rows = [
-    row for name in sweeps for row in sweep_results.read(pathlib.Path(name))
+    row for name in sweeps for row in case_rows.read_sweep(pathlib.Path(name))
   ]
   folder.mkdir(parents=True, exist_ok=True)
   return figures.draw(envelope.panels(rows), folder)

@@ -15,7 +15,7 @@ from waggle_tasks.experiments.claim_parts import (
   documents,
   finding,
 )
-from waggle_tasks.experiments.studies import sweep_results
+from waggle_tasks.experiments.studies import case_rows
 
 # Launchers that leave a folder, and so are told where.
 _LEAVES = ('broadcast', 'sweep', 'suite', 'sensitivity', 'ablate')
@@ -59,7 +59,7 @@ def claim(
       case book.ROWS:
         return compare.rows(block, printed)
       case book.CELLS:
-        rows = sweep_results.read(folder)
+        rows = case_rows.read_sweep(folder)
         return compare.cells(block, rows, each.table)
       case book.PATTERN:
         return compare.pattern(block, printed, each.detail)

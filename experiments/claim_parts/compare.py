@@ -90,7 +90,7 @@ def cells(
   tables = block.tables if number is None else block.tables[number : number + 1]
   found = [
     _cell(block, tables, cell, [*members])
-    for cell, members in itertools.groupby(results, lambda row: row['cell'])
+    for cell, members in itertools.groupby(results, lambda row: row.cell)
   ]
   return finding.gathered(block.place(), found, 'cells were flown again')
 

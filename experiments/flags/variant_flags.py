@@ -8,7 +8,7 @@ from absl import flags
 
 from waggle_tasks import suites
 from waggle_tasks.agents import receivers
-from waggle_tasks.experiments.flags import receiver_flag, workers_flag
+from waggle_tasks.experiments.flags import engine_flag, receiver_flag
 from waggle_tasks.experiments.pages import run_page
 from waggle_tasks.experiments.studies import variant_runner
 from waggle_tasks.protocol import checks
@@ -29,7 +29,7 @@ def define(suite: str, output: str) -> None:
   receiver_flag.define(None)
   flags.DEFINE_list('case', [], 'Only these cases, by name.')
   flags.DEFINE_list('variant', [], 'Only these variants, by name.')
-  workers_flag.define()
+  engine_flag.define()
   flags.DEFINE_string('output', output, 'Folder of the results.')
 
 
@@ -55,7 +55,7 @@ def run(
     variants: All there are, by name.
 
   Returns:
-    By name, the rows of each one's results.jsonl.
+    By name, the rows of each one.
 
   Raises:
     WaggleError: if a flag names what does not exist, or the suite cannot run.
@@ -72,7 +72,7 @@ def run(
     {name: variants[name] for name in names or variants},
     [c for c in cases if not wanted or c.name in wanted],
     pathlib.Path(values['output']),
-    workers_flag.count(values['workers']),
+    engine_flag.engine()[0],
     [command, f'--suite={suite}', *asked],
     run_page.leave,
   )

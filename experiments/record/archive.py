@@ -154,7 +154,7 @@ def read_json(path: pathlib.Path) -> dict[str, Any]:
   return value
 
 
-def read_rows(path: pathlib.Path, kind: type) -> list[dict[str, Any]]:
+def read_rows(path: pathlib.Path, kind: type[_Value]) -> list[_Value]:
   """Reads lines of results, as many as there are.
 
   Raises:
@@ -163,25 +163,29 @@ def read_rows(path: pathlib.Path, kind: type) -> list[dict[str, Any]]:
   """
   try:
     lines = path.read_text(encoding='utf-8').splitlines()
-    rows = [json.loads(line) for line in lines]
+    tables = [json.loads(line) for line in lines]
   except (OSError, ValueError) as error:
     raise ArchiveError(f'{path} cannot be read: {error}') from None
-  check_rows(rows, kind, path)
-  return rows
+  return rows(tables, kind, path)
 
 
-def check_rows(rows: Sequence[Any], kind: type, path: pathlib.Path) -> None:
-  """Refuses rows that could not be those of a dataclass.
+def rows(
+  tables: Sequence[Any], kind: type[_Value], path: pathlib.Path
+) -> list[_Value]:
+  """Makes rows of a file of the plain data of its lines.
 
   Raises:
     ArchiveError: naming the line and what is wrong with it.
     FormatError: if a newer program wrote one.
   """
-  for number, row in enumerate(rows, 1):
+  out = []
+  for number, table in enumerate(tables, 1):
     place = f'{path}, line {number},'
-    if isinstance(row, dict):
-      encoding.check_format(row, place)
-    _made(kind, row, place, 'row')
+    if isinstance(table, dict):
+      encoding.check_format(table, place)
+      table = {name: table[name] for name in table if name != 'format'}
+    out.append(_made(kind, table, place, 'row'))
+  return out
 
 
 def read_config(path: pathlib.Path) -> Config:
@@ -252,7 +256,6 @@ def read_events(
   Args:
     path: events.jsonl.
     names: The observers, also those without events.
-    units: The agreed fields of the payload.
 
   Raises:
     ArchiveError: naming the line that is damaged.

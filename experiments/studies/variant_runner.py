@@ -11,8 +11,9 @@ from typing import Any
 
 from waggle_tasks import suites
 from waggle_tasks.experiments.record import provenance, writer
+from waggle_tasks.experiments.studies import case_rows, pool
 
-Results = Mapping[str, list[dict[str, Any]]]
+Results = Mapping[str, list[case_rows.SuiteRow]]
 
 
 @dataclasses.dataclass(frozen=True)
@@ -34,7 +35,7 @@ def run(
   variants: Mapping[str, Variant],
   cases: Sequence[suites.Case],
   folder: pathlib.Path,
-  workers: int,
+  engine: pool.Engine,
   command: Sequence[str],
   page: writer.Page,
 ) -> Results:
@@ -44,18 +45,18 @@ def run(
     variants: What to run, by name.
     cases: The suite.
     folder: Where each variant's folder is kept.
-    workers: How many processes, at least 1.
+    engine: What flies the cases.
     command: The launcher and its flags; '--variant=NAME' runs one of them.
     page: Makes the page of a run folder.
 
   Returns:
-    By name, the rows of each one's results.jsonl.
+    By name, the rows of each one.
 
   Raises:
     WaggleError: if the suite cannot run.
   """
   # Imported here: help needs no simulator.
-  from waggle_tasks.experiments.studies import suite_runner
+  from waggle_tasks.experiments.studies import runner, suite_study
 
   results = {}
   for name, variant in variants.items():
@@ -64,9 +65,8 @@ def run(
       command[0], [*command[1:], f'--variant={name}']
     )
     moved = [_moved(case, variant) for case in cases]
-    results[name] = suite_runner.run(
-      moved, variant.receiver, folder / name, workers, line, page
-    )
+    study = suite_study.Suite(moved, variant.receiver, page)
+    results[name] = runner.run(study, folder / name, engine, line)
   return results
 
 

@@ -8,7 +8,7 @@ import dataclasses
 
 from waggle_tasks import appearance
 from waggle_tasks.experiments.machine import table
-from waggle_tasks.experiments.studies import variant_runner
+from waggle_tasks.experiments.studies import case_rows, variant_runner
 from waggle_tasks.protocol import gestures
 
 
@@ -79,20 +79,17 @@ def report(results: variant_runner.Results) -> str:
   lines = []
   for name, rows in results.items():
     changed = [
-      f'{row["case"]} {row["correct"]}/{row["observers"]}'
-      f' not {row["published"]["correct"]}/{row["observers"]}'
+      f'{row.case} {row.correct}/{row.observers}'
+      f' not {row.published.correct}/{row.observers}'
       for row in rows
-      if (row['correct'], row['passed'])
-      != (row['published']['correct'], row['published']['passed'])
+      if row.published is not None and not row.as_published
     ]
-    correct = sum(row['correct'] for row in rows)
+    got = case_rows.Tally.of(rows)
     lines.append(
       (
-        VARIANTS[name].label,
-        f'{correct}/{sum(row["observers"] for row in rows)}',
-        f'{sum(row["passed"] for row in rows)}/{len(rows)}',
+        VARIANTS[name].label, got.messages, got.groups,
         '; '.join(changed) or 'none',
       )
-    )
+    )  # fmt: skip
   header = ('choice moved', 'messages', 'groups', 'rows unlike the paper')
   return table.render(header, lines)

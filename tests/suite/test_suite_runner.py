@@ -15,7 +15,7 @@ import pytest
 from waggle_tasks import suites
 from waggle_tasks.experiments.pages import run_page
 from waggle_tasks.experiments.record import folders, provenance
-from waggle_tasks.experiments.studies import pool, suite_case
+from waggle_tasks.experiments.studies import case_rows, pool, suite_case
 
 FILES = {
   'config.json', 'events.jsonl', 'result.json', 'provenance.json', 'seal.json',
@@ -39,7 +39,7 @@ def test_every_case_leaves_its_files_and_its_line(reference: object) -> None:
 
 
 def test_the_rows_returned_are_the_lines_of_the_file(finished: object) -> None:
-  assert finished.run() == finished.lines()
+  assert [case_rows.table(row) for row in finished.run()] == finished.lines()
 
 
 def test_the_csv_has_a_line_for_each_observer(reference: object) -> None:
@@ -66,7 +66,7 @@ def test_a_case_says_what_made_it(reference: object) -> None:
   assert origin['versions'] == provenance.versions()
   assert origin['renderer']
   assert origin['began'] <= origin['ended']
-  name = 'waggle_tasks.experiments.studies.suite_runner'
+  name = 'waggle_tasks.experiments.studies.runner'
   assert re.fullmatch('[0-9a-f]{64}', origin['sources'][name])
 
 
@@ -144,10 +144,8 @@ def test_a_case_reports_exactly_the_frames_that_it_simulates(
   jobs = [
     pool.Job(
       case.name, suite_case.fly,
-      (
-        case, 'klt', 'identity', reference.command, tmp_path / case.name,
-        run_page.leave,
-      ),
+      (case, 'klt', 'identity', reference.command, run_page.leave),
+      draft=tmp_path / case.name,
     )
     for case in suites.from_rows(reference.rows[:2])
   ]  # fmt: skip

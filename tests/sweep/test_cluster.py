@@ -39,14 +39,16 @@ needs_ipv6 = pytest.mark.skipif(not IPV6, reason='needs IPv6')
 FLY = """
 import functools, pathlib, sys
 from waggle_tasks.experiments.record import scenario_fields
-from waggle_tasks.experiments.studies import cluster, sweep_cases, sweep_runner
+from waggle_tasks.experiments.studies import (
+  cluster, runner, sweep_cases, sweep_study)
 receiver, folder, scheduler, *grid = sys.argv[1:]
 base = scenario_fields.defaults() | {
   'control': 'no_send', 'duration_s': 1.0, 'observers': 1}
 engine = functools.partial(cluster.run, place=cluster.find(scheduler))
-sweep_runner.run(
-  sweep_cases.cases(sweep_cases.grid(grid), base, 1), receiver,
-  pathlib.Path(folder), engine, 'waggle sweep')
+cases = sweep_cases.cases(sweep_cases.grid(grid), base, 1)
+runner.run(
+  sweep_study.Sweep(cases, receiver), pathlib.Path(folder), engine,
+  'waggle sweep')
 """
 
 
@@ -400,7 +402,7 @@ def digest() -> str:
 
 
 def test_a_worker_of_the_same_sources_works(digest: str) -> None:
-  assert _work(digest, provenance.versions()) == 3
+  assert _work(digest, provenance.versions()) == (3, {})
 
 
 def test_a_worker_of_other_sources_is_refused(digest: str) -> None:
@@ -430,7 +432,7 @@ def test_a_worker_of_another_receiver_is_refused(
 
   error = 'must have the modules of the client: kept_receiver is missing on'
   path.write_text('# first')
-  assert work() == 3
+  assert work() == (3, {})
   path.write_text('# edited, but the worker still has what it imported')
   with pytest.raises(cluster.ClusterError, match=error):
     work()

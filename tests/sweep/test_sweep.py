@@ -11,6 +11,7 @@ import sys
 import pytest
 
 from waggle_tasks.experiments.results import figures
+from waggle_tasks.experiments.studies import case_rows
 
 Waggle = Callable[..., subprocess.CompletedProcess[str]]
 BRIEF = ('--control=no_send', '--duration_s=0.04', '--observers=1')
@@ -67,7 +68,8 @@ def test_several_sweeps_make_one_map_in_a_new_folder(
 ) -> None:
   for name, sigma in (('a', 0.0), ('b', 5.0)):
     rows = make.rows('distance_m=1,2', observers=1, noise_sigma=sigma)
-    text = ''.join(f'{json.dumps(row)}\n' for row in rows)
+    tables = map(case_rows.table, rows)
+    text = ''.join(f'{json.dumps(table)}\n' for table in tables)
     (tmp_path / name).mkdir()
     (tmp_path / name / 'results.jsonl').write_text(text)
   done = here('sweep', '--summary', 'a', 'b', '--output=both')
@@ -85,7 +87,9 @@ def test_a_wrong_message_is_exit_status_1(
   here: Waggle, tmp_path: pathlib.Path, make: object
 ) -> None:
   rows = make.rows(observers=1, fate=lambda c, n: {'decoded': '111111'})
-  (tmp_path / 'results.jsonl').write_text(json.dumps(rows[0]) + '\n')
+  (tmp_path / 'results.jsonl').write_text(
+    json.dumps(case_rows.table(rows[0])) + '\n'
+  )
   done = here('sweep', '--summary', '.')
   assert done.returncode == 1, done.stderr
   assert 'wrong messages: 1 in 1 exposures; at most 100.000%' in done.stdout
