@@ -9,7 +9,7 @@ import dataclasses
 
 from waggle_tasks.agents import receivers, settings
 from waggle_tasks.experiments.machine import table
-from waggle_tasks.experiments.studies import case_rows, variant_runner
+from waggle_tasks.experiments.studies import case_rows, variants
 
 LEGEND = (
   'messages: read as sent in the standard suite; groups: its broadcasts that'
@@ -22,7 +22,7 @@ LEGEND = (
 
 
 @dataclasses.dataclass(frozen=True)
-class Ablation(variant_runner.Variant):
+class Ablation(variants.Variant):
   """A receiver and what it lacks.
 
   Attributes:
@@ -71,7 +71,7 @@ def of(receiver: str) -> dict[str, Ablation]:
 
 
 def report(
-  results: variant_runner.Results, known: Mapping[str, Ablation] = ABLATIONS
+  results: variants.Results, known: Mapping[str, Ablation] = ABLATIONS
 ) -> str:
   """Puts what was run into a table, one line each.
 

@@ -49,36 +49,29 @@ class Study(abc.ABC, Generic[_Case, _Row]):
   kind: str  # For people.
   files: tuple[str, ...]  # What its folder may hold beside its tables.
 
-  def __init__(self, cases: Sequence[_Case], receiver_name: str) -> None:
+  def __init__(
+    self, cases: Sequence[_Case], receiver_name: str, replays: int = 0
+  ) -> None:
     """Makes a study.
 
     Args:
       cases: What is flown.
       receiver_name: The receiver of every observer.
+      replays: How many times each observer's images are shown again, spoilt,
+        see `replay_flight`; 0 to fly each case with its receivers.
     """
     self.cases = cases
     self.receiver_name = receiver_name
+    self.replays = replays
 
-  def identity(self, case: _Case, digest: str) -> str:
-    """What decides a case's result, see `identity.of`."""
-    return identity_lib.of(case.scene, self.receiver_name, digest)
-
-  def length_s(self, case: _Case) -> float:
-    """How much of a case the bar counts."""
-    return case.scene.episode_s
-
-  @abc.abstractmethod
   def rank(self, case: _Case) -> float:
-    """The cases with the least begin first."""
+    """Cases begin in this order: the longest first, to end together."""
+    return -case.scene.episode_s * case.scene.observers
 
-  @abc.abstractmethod
   def told(self, flown: int, active: Sequence[str]) -> str:
-    """The words before the bar.
-
-    Args:
-      flown: How many cases are, those of before among them.
-      active: The names of those that are under way.
-    """
+    """The words before the bar: how many were flown, or who is under way."""
+    del flown
+    return ', '.join(active)
 
   @abc.abstractmethod
   def known(
@@ -147,19 +140,22 @@ def run(
   sources = own | source_files.hashes(foreign)
   digest = provenance.source_digest(own)
   modules = tuple(outside.modules(foreign).items())
-  identities = {case.name: study.identity(case, digest) for case in study.cases}
+  shows = 1 + study.replays
+  more = f' {study.replays} replays' if study.replays else ''
+  identities = {
+    case.name: identity_lib.of(case.scene, study.receiver_name, digest) + more
+    for case in study.cases
+  }
   names = case_rows.RESULTS, case_rows.TABLE, *study.files
   with result_folder.locked(folder, names, study.kind):
     known = study.known(folder, identities)
     missing = [case for case in study.cases if case.name not in known]
     jobs = [
-      dataclasses.replace(
-        study.job(case, identities[case.name], command, folder),
-        modules=modules,
-      )
+      study.job(case, identities[case.name], command, folder)
       for case in sorted(missing, key=study.rank)
     ]
-    lengths_s = {case.name: study.length_s(case) for case in missing}
+    jobs = [dataclasses.replace(job, modules=modules) for job in jobs]
+    lengths_s = {case.name: shows * case.scene.episode_s for case in missing}
     # Workers are ended before the place where they write is cleared.
     with (
       study.keeping(folder) as keep,

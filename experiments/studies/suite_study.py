@@ -36,15 +36,6 @@ class Suite(runner.Study[suites.Case, case_rows.SuiteRow]):
     super().__init__(cases, receiver_name)
     self._page = page
 
-  def rank(self, case: suites.Case) -> float:
-    """The longest begin first, to end together."""
-    return -case.scene.episode_s * case.scene.observers
-
-  def told(self, flown: int, active: Sequence[str]) -> str:
-    """The cases that are under way."""
-    del flown
-    return ', '.join(active)
-
   def known(
     self, folder: pathlib.Path, identities: Mapping[str, str]
   ) -> dict[str, case_rows.SuiteRow]:

@@ -32,32 +32,6 @@ class Sweep(runner.Study[sweep_cases.Sample, case_rows.SweepRow]):
     *case_rows.FIGURES,
   )  # fmt: skip
 
-  def __init__(
-    self,
-    cases: Sequence[sweep_cases.Sample],
-    receiver_name: str,
-    replays: int = 0,
-  ) -> None:
-    """Makes a sweep.
-
-    Args:
-      cases: What is flown.
-      receiver_name: The receiver of every observer.
-      replays: How many times each observer's images are shown again, spoilt,
-        see `replay_flight`; 0 to fly each case with its receivers.
-    """
-    super().__init__(cases, receiver_name)
-    self._replays = replays
-
-  def identity(self, case: sweep_cases.Sample, digest: str) -> str:
-    """That of the flight, and how often it is shown again."""
-    own = super().identity(case, digest)
-    return f'{own} {self._replays} replays' if self._replays else own
-
-  def length_s(self, case: sweep_cases.Sample) -> float:
-    """The flight, and each time that it is shown again."""
-    return (1 + self._replays) * case.scene.episode_s
-
   def rank(self, case: sweep_cases.Sample) -> float:
     """A repeat of every cell before the next: the whole map is soon seen."""
     return case.repeat
@@ -93,9 +67,9 @@ class Sweep(runner.Study[sweep_cases.Sample, case_rows.SweepRow]):
     """Flies a case and makes its row."""
     del command, folder
     arguments = case, self.receiver_name, identity
-    if not self._replays:
+    if not self.replays:
       return pool.Job(case.name, sweep_flight.fly, arguments)
-    return pool.Job(case.name, replay_flight.fly, (*arguments, self._replays))
+    return pool.Job(case.name, replay_flight.fly, (*arguments, self.replays))
 
   @contextlib.contextmanager
   def keeping(
