@@ -61,8 +61,6 @@ def claim(
       case book.CELLS:
         rows = case_rows.read_sweep(folder)
         return compare.cells(block, rows, each.table)
-      case book.PATTERN:
-        return compare.pattern(block, printed, each.detail)
     return compare.part(block, printed)
 
 
