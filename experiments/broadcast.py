@@ -11,12 +11,11 @@ from collections.abc import Iterator, Sequence
 import contextlib
 import pathlib
 import sys
-from typing import TYPE_CHECKING
 
 from absl import flags
 
 from waggle_tasks import scenario
-from waggle_tasks.agents import observer_agent, receivers
+from waggle_tasks.agents import receivers
 from waggle_tasks.experiments import launch
 from waggle_tasks.experiments.flags import (
   config_flag,
@@ -38,10 +37,6 @@ from waggle_tasks.experiments.record import (
   writer,
 )
 from waggle_tasks.experiments.studies import job_progress
-
-if TYPE_CHECKING:
-  from dm_control import composer
-  import dm_env
 
 scenario_flags.define()
 recording_flags.define()
@@ -123,13 +118,8 @@ def _roll(
     bar_format=form + ' simulated [{elapsed} < {remaining}]',
   ) as bar:  # fmt: skip
 
-    def watch(
-      environment: 'composer.Environment',
-      timestep: 'dm_env.TimeStep',
-      team: observer_agent.Team,
-    ) -> None:
-      del environment, team
-      if not timestep.first():
+    def watch(step: episode.Step) -> None:
+      if not step.timestep.first():
         bar.update(frame)
 
     return rollout_lib.run(scene, receiver_name, [*watchers, watch])

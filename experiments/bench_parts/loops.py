@@ -4,11 +4,7 @@ from collections.abc import Sequence
 import dataclasses
 import time
 
-from dm_control import composer
-import dm_env
-
 from waggle_tasks import scenario
-from waggle_tasks.agents import observer_agent
 from waggle_tasks.experiments.bench_parts import processes
 from waggle_tasks.experiments.episodes import rollout
 from waggle_tasks.experiments.record import episode
@@ -56,15 +52,9 @@ class _Watch:
     self.first_s = self.last_s = 0.0
     self.steps = 0
 
-  def __call__(
-    self,
-    environment: composer.Environment,
-    timestep: dm_env.TimeStep,
-    team: observer_agent.Team,
-  ) -> None:
-    del environment, team
+  def __call__(self, step: episode.Step) -> None:
     self.last_s = self._clock()
-    if timestep.first():
+    if step.timestep.first():
       self.first_s = self.last_s
     else:
       self.steps += 1

@@ -2,12 +2,10 @@
 
 from collections.abc import Sequence
 
-from dm_control import composer
-import dm_env
-
 from waggle_tasks import scenario
-from waggle_tasks.agents import observer_agent, receiver, receivers
+from waggle_tasks.agents import receiver, receivers
 from waggle_tasks.experiments.bench_parts import loops, processes
+from waggle_tasks.experiments.record import episode
 
 
 class Audience:
@@ -33,16 +31,10 @@ class Audience:
     }
     self.seconds: dict[str, list[float]] = {n: [] for n in self._readers}
 
-  def __call__(
-    self,
-    environment: composer.Environment,
-    timestep: dm_env.TimeStep,
-    team: observer_agent.Team,
-  ) -> None:
+  def __call__(self, step: episode.Step) -> None:
     """Shows a time step's images to those who still read."""
-    del environment, team
     for name, readers in self._readers.items():
-      for index, each in enumerate(timestep.observation):
+      for index, each in enumerate(step.timestep.observation):
         reader = readers[index]
         if reader is None:
           continue

@@ -63,7 +63,7 @@ def play(
     action = team.step(timestep.observation)
     tracer.note(team)
     for watch in watchers:
-      watch(environment, timestep, team)
+      watch(episode.Step(environment, timestep, team))
     if timestep.last():
       break
     timestep = environment.step(action)

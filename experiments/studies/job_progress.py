@@ -1,18 +1,12 @@
 """How far jobs are: what a job tells, and the bar that shows it."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING
 
 import tqdm
 
-from waggle_tasks.agents import observer_agent
 from waggle_tasks.experiments.record import episode
 from waggle_tasks.experiments.studies import pool
 from waggle_tasks.protocol import agreement
-
-if TYPE_CHECKING:
-  from dm_control import composer
-  import dm_env
 
 _FORM = '{desc}|{bar}| {n:.0f}/{total:.0f} s simulated [{elapsed} <'
 _REPORT_S = 2.0  # How often an episode says that it is alive.
@@ -22,15 +16,10 @@ def reporter(report: Callable[[float], None]) -> episode.Watcher:
   """What watches an episode and reports how many seconds are done."""
   due_s = 0.0
 
-  def watch(
-    environment: 'composer.Environment',
-    timestep: 'dm_env.TimeStep',
-    team: observer_agent.Team,
-  ) -> None:
-    del team
+  def watch(step: episode.Step) -> None:
     nonlocal due_s
-    time_s = environment.physics.time()
-    if timestep.last() or time_s >= due_s:
+    time_s = step.environment.physics.time()
+    if step.timestep.last() or time_s >= due_s:
       due_s = time_s + _REPORT_S
       report(time_s)
 

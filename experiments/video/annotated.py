@@ -1,7 +1,6 @@
 """A copy of a recording that shows what a receiver made of it."""
 
 import pathlib
-import types
 
 import cv2
 import numpy as np
@@ -53,12 +52,7 @@ class Film:
   def __enter__(self) -> 'Film':
     return self
 
-  def __exit__(
-    self,
-    kind: type[BaseException] | None,
-    error: BaseException | None,
-    trace: types.TracebackType | None,
-  ) -> None:
+  def __exit__(self, kind: object, error: object, trace: object) -> None:
     if error is None and self._made is not None:
       try:
         self._made[1].close()

@@ -3,14 +3,12 @@
 from collections.abc import Mapping, Sequence
 
 import cv2
-from dm_control import composer
-import dm_env
 import numpy as np
 
 from waggle_tasks import scenario
-from waggle_tasks.agents import observer_agent, receivers
+from waggle_tasks.agents import receivers
 from waggle_tasks.experiments.episodes import rollout as rollout_lib
-from waggle_tasks.experiments.record import story, traces
+from waggle_tasks.experiments.record import episode, story, traces
 from waggle_tasks.experiments.results import palette
 from waggle_tasks.experiments.video import film, layout, lens, page, pen
 from waggle_tasks.protocol import agreement as agreement_lib
@@ -46,20 +44,16 @@ class Shots:
     self.composite: np.ndarray | None = None
     self.images: dict[int, np.ndarray] = {}
 
-  def __call__(
-    self,
-    environment: composer.Environment,
-    timestep: dm_env.TimeStep,
-    team: observer_agent.Team,
-  ) -> None:
+  def __call__(self, step: episode.Step) -> None:
     """Keeps what belongs to this frame."""
-    self._lens.note(environment, timestep, team)
+    self._lens.note(step)
     frame = self._lens.frame
     if frame == self._at:
       now = self._lens.moment(self._names, self._lens.shared())
       self.composite = self._page.draw(now).copy()
     if frame in self._wanted:
-      self.images[frame] = timestep.observation[_OBSERVER]['camera'].copy()
+      seen = step.timestep.observation[_OBSERVER]
+      self.images[frame] = seen['camera'].copy()
 
 
 def firsts(sent: Sequence[story.Sent]) -> list[story.Sent]:
