@@ -18,7 +18,6 @@ from waggle_tasks.experiments.bench_parts import (
   cameras,
   events,
   loops,
-  memory,
   processes,
   readers,
   report,
@@ -222,7 +221,7 @@ def test_a_loop_counts_steps_and_not_what_is_around_them() -> None:
 
 def test_peak_memory_never_falls() -> None:
   scene = registry.find('broadcast', observers=1, duration_s=FRAME_S)
-  peaks_mb = memory.measure(scene, 2)
+  peaks_mb = loops.peaks_mb(scene, 2)
   assert 50.0 < peaks_mb[0] <= peaks_mb[1] < 10_000.0
 
 

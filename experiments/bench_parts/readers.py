@@ -52,11 +52,18 @@ def measure(
   clock: processes.Clock,
   names: Sequence[str],
 ) -> list[dict[str, list[float]]]:
-  """Runs a broadcast for receivers of some names at a time.
+  """Runs a broadcast for several receivers at a time.
+
+  Args:
+    scene: The broadcast.
+    repeats: How often.
+    clock: What images are measured by.
+    names: The receivers beside the paper's; empty for all that have a name.
 
   Returns:
     For each repeat, by receiver, the seconds of every image.
   """
+  names = [*dict.fromkeys([loops.RECEIVER, *(names or receivers.RECEIVERS)])]
   out = []
   for _ in range(repeats):
     audience = Audience(scene, clock, names)

@@ -134,7 +134,7 @@ def measure(
   Returns:
     For each repeat the stages in the order of `STAGES`, and the rest.
   """
-  loops.run(dataclasses.replace(scene, duration_s=2 * scene.agreement.frame_s))
+  loops.run(loops.two_frames(scene))
   names = dict.fromkeys([*(each.stage for each in STAGES), OTHER])
   out = []
   for _ in range(repeats):
