@@ -59,13 +59,13 @@ def main(argv: Sequence[str]) -> int:
 
 def _run() -> int:
   """Does it, and leaves all numbers in the file whose name is claimed."""
-  from waggle_tasks.experiments.bench_parts import actions, sections
+  from waggle_tasks.experiments.bench_parts import answers, sections
   from waggle_tasks.experiments.machine import files
   from waggle_tasks.experiments.record import encoding
 
-  here = actions.machine()
+  here = answers.machine()
   if _CHECK_EVENTS.value:
-    answer = actions.check_events(_SUITE.value)
+    answer = answers.check_events(_SUITE.value)
   else:
     settings = sections.Settings(
       here['renderer'],
@@ -74,7 +74,7 @@ def _run() -> int:
       _LONG.value,
       tuple(_RECEIVER.value or ()),
     )
-    answer = actions.measure(here, _ONLY.value, settings)
+    answer = answers.measure(here, _ONLY.value, settings)
   if _JSON.value is not None:
     text = encoding.pretty({**here, **answer.found})
     files.put(pathlib.Path(_JSON.value), text)

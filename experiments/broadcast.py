@@ -68,8 +68,8 @@ def main(argv: Sequence[str]) -> int:
     print(f'provenance.json will not be complete: {error}', file=sys.stderr)
   with _folder() as (draft, folder):
     start = provenance.Start.now(command, foreign)
-    with recording_flags.recorders(draft, scene) as watchers:
-      rollout = _roll(scene, receiver_name, watchers)
+    with recording_flags.recorders(draft, scene) as onlookers:
+      rollout = _roll(scene, receiver_name, onlookers)
     verdict = evaluator.evaluate(scene, rollout)
     writer.write_run(
       draft, scene, receiver_name, rollout, verdict,
@@ -106,7 +106,7 @@ def _folder() -> Iterator[tuple[pathlib.Path, pathlib.Path]]:
 def _roll(
   scene: scenario.Scenario,
   receiver_name: str,
-  watchers: Sequence[episode.Watcher],
+  onlookers: Sequence[episode.Onlooker],
 ) -> episode.Rollout:
   """Runs the episode behind a progress bar of simulated seconds."""
   from waggle_tasks.experiments.episodes import rollout as rollout_lib
@@ -122,7 +122,7 @@ def _roll(
       if not step.timestep.first():
         bar.update(frame)
 
-    return rollout_lib.run(scene, receiver_name, [*watchers, watch])
+    return rollout_lib.run(scene, receiver_name, [*onlookers, watch])
 
 
 def report(scene: scenario.Scenario, verdict: verdicts.Verdict) -> str:

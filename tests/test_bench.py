@@ -20,9 +20,9 @@ from waggle_tasks.experiments.bench_parts import (
   loops,
   processes,
   readers,
-  report,
   sections,
   stages,
+  tables,
 )
 
 Waggle = Callable[..., subprocess.CompletedProcess[str]]
@@ -65,7 +65,7 @@ MEASURED = {
 
 
 def test_ratios_are_medians_of_what_was_measured_side_by_side() -> None:
-  assert report.ratios(MEASURED) == pytest.approx(
+  assert tables.ratios(MEASURED) == pytest.approx(
     {
       'stock camera / incremental camera': 100.0,
       'stock, no shadows or multisampling / incremental camera': 10.0,
@@ -79,11 +79,11 @@ def test_ratios_are_medians_of_what_was_measured_side_by_side() -> None:
 
 
 def test_a_report_tells_the_ratios_before_anything_else() -> None:
-  first, *tables = report.text(MEASURED).split('\n\n')
+  first, *others = tables.text(MEASURED).split('\n\n')
   assert first.splitlines()[0] == 'ratio'
-  assert len(first.splitlines()) == 2 + len(report.ratios(MEASURED))
-  assert len(tables) == len(sections.SECTIONS)
-  lines = [line for each in tables for line in each.splitlines()]
+  assert len(first.splitlines()) == 2 + len(tables.ratios(MEASURED))
+  assert len(others) == len(sections.SECTIONS)
+  lines = [line for each in others for line in each.splitlines()]
   assert {
     'stock 60.000 36',
     'all rest 0.100 40%',
@@ -96,7 +96,7 @@ def test_a_report_tells_the_ratios_before_anything_else() -> None:
 
 
 def test_a_part_alone_has_a_report_of_its_own() -> None:
-  text = report.text({'memory': MEASURED['memory']})
+  text = tables.text({'memory': MEASURED['memory']})
   assert text.startswith('peak memory of a process')
 
 

@@ -43,7 +43,7 @@ def play() -> Iterator[Callable[..., tuple]]:
     scene: scenario.Scenario,
     receiver_name: str,
     change: Callable[[composer.Environment], object] = lambda environment: None,
-    watch: episode.Watcher = lambda *seen: None,
+    watch: episode.Onlooker = lambda *seen: None,
   ) -> tuple[rollout_lib.Rollout, verdicts.Outcome]:
     environment = registry.environment(scene)
     made.append(environment)

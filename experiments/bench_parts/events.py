@@ -99,5 +99,5 @@ def _fly(
   """The event log of a case; called in a worker."""
   cv2.setNumThreads(1)  # Workers share the cores.
   scene = dataclasses.replace(case.scene, camera=camera)
-  watchers = [job_progress.reporter(report)]
-  return list(writer.event_lines(rollout.run(scene, loops.RECEIVER, watchers)))
+  onlookers = [job_progress.reporter(report)]
+  return list(writer.event_lines(rollout.run(scene, loops.RECEIVER, onlookers)))

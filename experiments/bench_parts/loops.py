@@ -52,7 +52,7 @@ class Loop:
 
 
 class _Watch:
-  """A watcher that notes when the first and the last step ended."""
+  """An onlooker that notes when the first and the last step ended."""
 
   def __init__(self, clock: processes.Clock) -> None:
     self._clock = clock
@@ -70,18 +70,18 @@ class _Watch:
 def run(
   scene: scenario.Scenario,
   clock: processes.Clock = time.perf_counter,
-  watchers: Sequence[episode.Watcher] = (),
+  onlookers: Sequence[episode.Onlooker] = (),
 ) -> Loop:
   """Runs a broadcast with the paper's receiver.
 
   Args:
     scene: The scenario.
     clock: What the loop is measured by.
-    watchers: What else looks on.
+    onlookers: What else looks on.
   """
   watch = _Watch(clock)
   cpu_s, begin_s = time.process_time(), time.perf_counter()
-  rollout.run(scene, RECEIVER, [*watchers, watch])
+  rollout.run(scene, RECEIVER, [*onlookers, watch])
   return Loop(
     scene.observers,
     watch.steps,

@@ -8,8 +8,8 @@ from waggle_tasks.experiments.bench_parts import loops, processes
 from waggle_tasks.experiments.record import episode
 
 
-class Audience:
-  """A watcher that lets several receivers read what each observer sees.
+class Readers:
+  """An onlooker that lets several receivers read what each observer sees.
 
   Attributes:
     seconds: By receiver, what each image took until it had the message.
@@ -66,7 +66,7 @@ def measure(
   names = [*dict.fromkeys([loops.RECEIVER, *(names or receivers.RECEIVERS)])]
   out = []
   for _ in range(repeats):
-    audience = Audience(scene, clock, names)
-    loops.run(scene, clock, [audience])
-    out.append(audience.seconds)
+    readers = Readers(scene, clock, names)
+    loops.run(scene, clock, [readers])
+    out.append(readers.seconds)
   return out

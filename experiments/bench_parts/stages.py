@@ -64,7 +64,7 @@ STAGES = (
 class Timer:
   """Counts seconds for the stage that runs now, and for that one alone.
 
-  As a watcher of a rollout it begins with the first step and ends with the
+  As an onlooker of a rollout it begins with the first step and ends with the
   last.
   """
 

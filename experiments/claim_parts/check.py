@@ -22,7 +22,7 @@ _LEAVES = ('broadcast', 'sweep', 'suite', 'sensitivity', 'ablate')
 _MOST = 1  # The exit status of a command that ran; above, it did not.
 
 
-class CommandError(errors.WaggleError):
+class RerunError(errors.WaggleError):
   """A command that did not run."""
 
 
@@ -37,7 +37,7 @@ def claim(
     workers: How many processes fly.
 
   Raises:
-    CommandError: if its command did not run.
+    RerunError: if its command did not run.
   """
   block = library.blocks.get(each.block)
   if block is None:
@@ -82,7 +82,7 @@ def _run(
     stdout=subprocess.PIPE, text=True, check=False,
   )  # fmt: skip
   if child.returncode not in range(_MOST + 1):
-    raise CommandError(
+    raise RerunError(
       f'`waggle {" ".join(command)}` must run: it ended with exit status'
       f' {child.returncode}'
     )

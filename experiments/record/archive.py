@@ -27,7 +27,7 @@ class ArchiveError(errors.WaggleError):
 
 
 @dataclasses.dataclass(frozen=True)
-class Config:
+class Flown:
   """What was flown, as config.json has it.
 
   Attributes:
@@ -75,7 +75,7 @@ class Run:
   """
 
   folder: pathlib.Path
-  config: Config
+  config: Flown
   result: Result
   provenance: dict
   events: dict[str, tuple[episode.Event, ...]]
@@ -188,7 +188,7 @@ def rows(
   return out
 
 
-def read_config(path: pathlib.Path) -> Config:
+def read_config(path: pathlib.Path) -> Flown:
   """Reads what was flown in a run.
 
   Args:
@@ -211,7 +211,7 @@ def read_config(path: pathlib.Path) -> Config:
       name: value for name, value in scene.items()
       if name in names and isinstance(value, dict)
     }  # fmt: skip
-  return _made(Config, table, path)
+  return _made(Flown, table, path)
 
 
 def read_result(path: pathlib.Path) -> Result:

@@ -195,7 +195,7 @@ def _window(data: bytes, shape: tuple[int, int, int]) -> np.ndarray | None:
 
 
 class Recorder:
-  """A watcher that captures every image that a receiver takes."""
+  """An onlooker that captures every image that a receiver takes."""
 
   def __init__(self, folder: pathlib.Path) -> None:
     """Makes the recorder, a context manager.

@@ -67,4 +67,4 @@ class Step:
 
 
 # What looks on: it may look at everything and change nothing.
-Watcher = Callable[[Step], None]
+Onlooker = Callable[[Step], None]

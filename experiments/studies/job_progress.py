@@ -12,7 +12,7 @@ _FORM = '{desc}|{bar}| {n:.0f}/{total:.0f} s simulated [{elapsed} <'
 _REPORT_S = 2.0  # How often an episode says that it is alive.
 
 
-def reporter(report: Callable[[float], None]) -> episode.Watcher:
+def reporter(report: Callable[[float], None]) -> episode.Onlooker:
   """What watches an episode and reports how many seconds are done."""
   due_s = 0.0
 
@@ -51,7 +51,7 @@ def seconds_bar(duration_s: float, **look: object) -> tqdm.tqdm:
 
 
 def shown(
-  news: Iterable[pool.Progress | pool.Done],
+  news: Iterable[pool.Advance | pool.Done],
   lengths_s: Mapping[str, float],
   describe: Callable[[int, Sequence[str]], str],
 ) -> Iterator[pool.Done]:
@@ -73,7 +73,7 @@ def shown(
   ) as bar:
     for each in news:
       name, before = each.job.name, flown.get(each.job.name, 0)
-      if isinstance(each, pool.Progress):
+      if isinstance(each, pool.Advance):
         flown[name] = min(ticks(each.amount), lengths[name])
         active[name] = True
       else:

@@ -67,7 +67,7 @@ class Job:
 
 
 @dataclasses.dataclass(frozen=True)
-class Progress:
+class Advance:
   """How far a job is; `amount` is what its work reported."""
 
   job: Job
@@ -90,7 +90,7 @@ class Done:
 
 
 # Begins jobs in their order and tells what becomes of them.
-Engine = Callable[[Sequence[Job]], Generator[Progress | Done]]
+Engine = Callable[[Sequence[Job]], Generator[Advance | Done]]
 
 
 @dataclasses.dataclass(eq=False)
@@ -105,7 +105,7 @@ class _Worker:
 
 def run(
   jobs: Sequence[Job], workers: int, silence_s: float = SILENCE_S
-) -> Generator[Progress | Done]:
+) -> Generator[Advance | Done]:
   """Runs jobs and yields what happens, in the order in which it happens.
 
   Args:
@@ -171,7 +171,7 @@ def _give(worker: _Worker, job: Job) -> None:
     worker.pipe.send(job)
 
 
-def _hear(worker: _Worker, job: Job) -> Iterator[Progress | Done]:
+def _hear(worker: _Worker, job: Job) -> Iterator[Advance | Done]:
   kind, value = worker.pipe.recv()
   worker.heard_s = time.monotonic()
   if kind == 'failed':
@@ -180,7 +180,7 @@ def _hear(worker: _Worker, job: Job) -> Iterator[Progress | Done]:
     worker.job = None
     yield Done(job, value)
   else:
-    yield Progress(job, value)
+    yield Advance(job, value)
 
 
 def _retry(

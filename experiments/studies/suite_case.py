@@ -47,11 +47,11 @@ def fly(
   """
   foreign = outside.paths(receiver_name, [case.scene])
   start = provenance.Start.now(command, foreign)
-  watchers = [job_progress.reporter(report)]
+  onlookers = [job_progress.reporter(report)]
   try:
     shutil.rmtree(draft, ignore_errors=True)
     draft.mkdir(parents=True)
-    rollout = rollout_lib.run(case.scene, receiver_name, watchers)
+    rollout = rollout_lib.run(case.scene, receiver_name, onlookers)
     verdict = evaluator.evaluate(case.scene, rollout)
     writer.write_run(
       draft,

@@ -33,8 +33,8 @@ def fly(
   Returns:
     Its row.
   """
-  watchers = [job_progress.reporter(report)]
-  rollout = rollout_lib.run(case.scene, receiver_name, watchers)
+  onlookers = [job_progress.reporter(report)]
+  rollout = rollout_lib.run(case.scene, receiver_name, onlookers)
   verdict = evaluator.evaluate(case.scene, rollout)
   return row(case, receiver_name, identity, rollout, verdict)
 

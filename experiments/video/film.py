@@ -1,4 +1,4 @@
-"""Films an episode while it runs: a watcher that leaves video files."""
+"""Films an episode while it runs: an onlooker that leaves video files."""
 
 import functools
 import pathlib

@@ -58,7 +58,7 @@ class Lens:
 
   def moment(
     self, names: Sequence[str], shared: dict[str, np.ndarray]
-  ) -> moment.Moment:
+  ) -> moment.Instant:
     """The moment of the latest frame.
 
     Args:
@@ -75,7 +75,7 @@ class Lens:
     sights = tuple(self._watches[name].sight(images[name]) for name in names)
     symbol = story.symbol_at(self._sent, time_s)
     places = {name: self._places(self._shared[name]) for name in shared}
-    return moment.Moment(time_s, symbol, sights, shared, places)
+    return moment.Instant(time_s, symbol, sights, shared, places)
 
   def _places(self, camera: str) -> dict[str, tuple[float, float]]:
     """Columns and rows of the vehicles that stand before a camera."""

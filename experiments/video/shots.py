@@ -23,7 +23,7 @@ _GAP, _TITLE = 8, 30
 
 
 class Shots:
-  """A watcher that keeps what the pictures show.
+  """An onlooker that keeps what the pictures show.
 
   Attributes:
     composite: (H, W, 3) uint8 RGB, a picture of the composite video.
@@ -31,7 +31,7 @@ class Shots:
   """
 
   def __init__(self, scene: scenario.Scenario) -> None:
-    """Makes the watcher of an episode that has not begun."""
+    """Makes the onlooker of an episode that has not begun."""
     self._lens = lens.Lens(scene)
     self._names = tuple(f'observer_{k + 1}' for k in range(scene.observers))
     self._page = film.composite(scene, self._names)

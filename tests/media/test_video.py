@@ -55,7 +55,7 @@ def overlap(a: layout.Rect, b: layout.Rect) -> bool:
   )  # fmt: skip
 
 
-def parts(plan: layout.Layout) -> list[layout.Rect]:
+def parts(plan: layout.PageLayout) -> list[layout.Rect]:
   """Everything on a page, pictures with their titles and feet."""
   out = [plan.header, plan.card, plan.strip]
   for picture in (*plan.observers, *plan.shared.values()):
@@ -323,12 +323,12 @@ def strip_of(*events: object) -> np.ndarray:
   """The strip of events at the end of a broadcast, (H, W, 3)."""
   plan = layout.plan(1)
   strip = panel.Strip(plan, ['observer_1'], (), 104.6)
-  sight = moment.Sight(
+  sight = moment.View(
     'observer_1', np.zeros((2, 2, 3), np.uint8), None, np.empty((0, 2)),
     story.Reading(), events,
   )  # fmt: skip
   canvas = np.zeros((plan.height, plan.width, 3), np.uint8)
-  strip.draw(canvas, moment.Moment(0.0, Symbol.NULL, (sight,), {}, {}))
+  strip.draw(canvas, moment.Instant(0.0, Symbol.NULL, (sight,), {}, {}))
   return canvas[plan.strip.slices]
 
 

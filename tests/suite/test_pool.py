@@ -55,7 +55,7 @@ def parent(
     text=True,
     start_new_session=True,
   )
-  awaited = {'quick Done\n', 'long Progress\n'}
+  awaited = {'quick Done\n', 'long Advance\n'}
   while awaited and (line := process.stdout.readline()):
     awaited.discard(line)
   assert not awaited
@@ -65,7 +65,7 @@ def parent(
   process.communicate()
 
 
-def finished(news: list[pool.Progress | pool.Done]) -> dict[str, object]:
+def finished(news: list[pool.Advance | pool.Done]) -> dict[str, object]:
   """What each job returned; every job is done exactly once."""
   done = [each for each in news if isinstance(each, pool.Done)]
   out = {each.job.name: each.value for each in done}

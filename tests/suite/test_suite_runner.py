@@ -151,7 +151,7 @@ def test_a_case_reports_exactly_the_frames_that_it_simulates(
   ]  # fmt: skip
   told = {}
   for news in pool.run(jobs, 1):
-    if isinstance(news, pool.Progress):
+    if isinstance(news, pool.Advance):
       told[news.job.name] = news.amount
   assert told == pytest.approx({'silent': 1.0, 'pair': 4.0})
 
@@ -165,12 +165,12 @@ def test_a_case_that_is_tried_again_does_not_upset_the_bar(
 
   def retry(
     jobs: list[pool.Job], workers: int
-  ) -> Iterator[pool.Progress | pool.Done]:
+  ) -> Iterator[pool.Advance | pool.Done]:
     del workers
     (job,) = jobs
     for _ in range(3):  # Two workers died near the end.
       time.sleep(0.6)  # So long that the bar is drawn.
-      yield pool.Progress(job, 1.0)
+      yield pool.Advance(job, 1.0)
     shutil.copytree(blink_reference.home('blink'), drafts / 'blink')
     yield pool.Done(job, None)
 

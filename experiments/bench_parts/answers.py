@@ -11,8 +11,8 @@ from waggle_tasks import registry, suites
 from waggle_tasks.experiments.bench_parts import (
   events,
   processes,
-  report,
   sections,
+  tables,
 )
 from waggle_tasks.experiments.machine import gl
 from waggle_tasks.experiments.record import provenance
@@ -67,11 +67,11 @@ def measure(
     f' it began.\nMedians of {settings.repeats}, images and loops by {clock}.'
   )
   return Answer(
-    f'{title}\n\n{report.text(results)}',
+    f'{title}\n\n{tables.text(results)}',
     {
       'settings': settings,
       'clock': clock,
-      'ratios': report.ratios(results),
+      'ratios': tables.ratios(results),
       'measured': results,
     },
   )
