@@ -8,13 +8,8 @@ from typing import Any
 import tqdm
 
 from waggle_tasks import registry, suites
-from waggle_tasks.experiments.bench_parts import (
-  events,
-  processes,
-  sections,
-  tables,
-)
-from waggle_tasks.experiments.machine import gl
+from waggle_tasks.experiments.bench_parts import events, sections, tables
+from waggle_tasks.experiments.machine import cores, gl
 from waggle_tasks.experiments.record import provenance
 
 
@@ -37,7 +32,7 @@ def machine() -> dict[str, Any]:
   """What measurements depend on, before they begin."""
   return {
     'renderer': gl.render_once().renderer,
-    'cores': len(processes.cores()),
+    'cores': len(cores.usable()),
     'load': os.getloadavg()[0],
     'versions': provenance.versions(),
   }
@@ -88,6 +83,6 @@ def check_events(suite: str | None) -> Answer:
   """
   default = suites.Case('broadcast', 'own', '', registry.find('broadcast'))
   cases = (default,) if suite is None else suites.find(suite)
-  logs = [*events.compare(cases, len(processes.cores()))]
+  logs = [*events.compare(cases, len(cores.usable()))]
   same = all(each.difference is None for each in logs)
   return Answer(events.report(logs), {'events': logs}, same)

@@ -1,10 +1,9 @@
 """The flag that says how many processes work, for launchers that take it."""
 
-import os
-
 from absl import flags
 
 from waggle_tasks import errors
+from waggle_tasks.experiments.machine import cores
 from waggle_tasks.protocol import checks
 
 # The flag defined here belongs to the launcher that asks for it.
@@ -31,6 +30,4 @@ def count(value: int | None) -> int:
   """
   if value is not None:
     return checks.integer('workers', value, 1, _MOST, errors.WaggleError)
-  if hasattr(os, 'sched_getaffinity'):
-    return len(os.sched_getaffinity(0))
-  return os.cpu_count() or 1
+  return len(cores.usable())

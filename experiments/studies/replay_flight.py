@@ -10,6 +10,7 @@ from collections.abc import Callable
 import hashlib
 
 from waggle_tasks.agents import receiver, receivers
+from waggle_tasks.arenas import layouts
 from waggle_tasks.experiments.episodes import evaluator
 from waggle_tasks.experiments.episodes import tape as tape_lib
 from waggle_tasks.experiments.record import verdicts
@@ -43,8 +44,8 @@ def fly(
   scene, exposures = case.scene, []
   tapes = tape_lib.record(scene, report)
   poses = scene.poses()
-  for number, tape in enumerate(tapes, 1):
-    name = f'observer_{number}'
+  named = zip(layouts.names(scene.observers), tapes, strict=True)
+  for number, (name, tape) in enumerate(named, 1):
     expected = evaluator.expected_bits(scene, number)
     for replay in range(replays):
       text = f'{scene.seed} {number} {replay}'

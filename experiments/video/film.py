@@ -4,6 +4,7 @@ import functools
 import pathlib
 
 from waggle_tasks import scenario
+from waggle_tasks.arenas import layouts
 from waggle_tasks.experiments.record import changes, episode, story
 from waggle_tasks.experiments.video import encoders, layout, lens, page
 from waggle_tasks.protocol import checks
@@ -48,7 +49,7 @@ class Film:
     """
     name = name or f'{view}.webm'
     encoders.check_name(name)
-    names = [f'observer_{k + 1}' for k in range(scene.observers)]
+    names = layouts.names(scene.observers)
     views = [layout.COMPOSITE, *names, *layout.SHARED]
     checks.choice('view', view, views, layout.VideoError)
     agreement = scene.agreement

@@ -7,6 +7,7 @@ import numpy as np
 
 from waggle_tasks import scenario
 from waggle_tasks.agents import receivers
+from waggle_tasks.arenas import layouts
 from waggle_tasks.experiments.episodes import rollout as rollout_lib
 from waggle_tasks.experiments.record import episode, story, traces
 from waggle_tasks.experiments.results import palette
@@ -33,7 +34,7 @@ class Shots:
   def __init__(self, scene: scenario.Scenario) -> None:
     """Makes the onlooker of an episode that has not begun."""
     self._lens = lens.Lens(scene)
-    self._names = tuple(f'observer_{k + 1}' for k in range(scene.observers))
+    self._names = tuple(layouts.names(scene.observers))
     self._page = film.composite(scene, self._names)
     self._at = scene.agreement.frames(_TIME_S)
     self._wanted = {
