@@ -123,6 +123,35 @@ def fly(*words: str, **more: object) -> subprocess.CompletedProcess[str]:
   )  # fmt: skip
 
 
+@needs_dask
+def test_a_suite_leaves_the_same_run_folders_from_a_cluster(
+  scheduler: pathlib.Path,
+  waggle: Callable[..., subprocess.CompletedProcess[str]],
+  tmp_path: pathlib.Path,
+  wait_until: Callable[..., None],
+) -> None:
+  address = listening(scheduler, wait_until)
+  case = {'name': 'still', 'task': 'no_send', 'duration_s': 0.2}
+  (tmp_path / 'own.json').write_text(json.dumps([case]))
+  left = []
+  for engine in ('--workers=1', f'--scheduler={address}'):
+    done = waggle('suite', '--suite=own.json', engine, cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    folder = (tmp_path / 'runs' / 'own-klt').rename(tmp_path / f'{len(left)}')
+    left.append(
+      {
+        path.relative_to(folder): path.read_bytes()
+        for path in folder.rglob('*')
+        # They hold the wall clock, or the name of their folder.
+        if path.is_file() and path.name not in ('provenance.json', 'seal.json')
+        if path != folder / 'index.html'
+      }
+    )
+  assert f'with the cluster of {address}' in done.stdout
+  assert left[0] == left[1]
+  assert pathlib.Path('cases', 'still', 'events.jsonl') in left[1]
+
+
 OWN = """
 from waggle_tasks.agents import receiver
 
@@ -394,6 +423,18 @@ def _work(
 ) -> object:
   job = pool.Job('a', lambda report, value: value, (3,), modules)
   return cluster._work(job, (digest, versions))
+
+
+def test_what_a_job_leaves_in_its_folder_comes_with_its_result(
+  tmp_path: pathlib.Path,
+) -> None:
+  def work(report: object, text: str, draft: pathlib.Path) -> None:
+    draft.mkdir()
+    (draft / 'said').write_text(text)
+
+  job = pool.Job('a', work, ('hello',), draft=tmp_path / 'a')
+  assert cluster._done(job) == (None, {'said': b'hello'})
+  assert not (tmp_path / 'a').exists()
 
 
 @pytest.fixture

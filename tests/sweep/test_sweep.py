@@ -6,7 +6,6 @@ import pathlib
 import re
 import shutil
 import subprocess
-import sys
 
 import pytest
 
@@ -95,26 +94,7 @@ def test_a_wrong_message_is_exit_status_1(
   assert 'wrong messages: 1 in 1 exposures; at most 100.000%' in done.stdout
 
 
-# Bad input. Python and dm_control take a second to start, so that one process
-# takes every line; it forgets the flags in between.
-SCRIPT = """
-import contextlib, io, json, os, sys
-from absl import flags
-from waggle_tasks.experiments import launch
-
-answers = []
-for argv in json.load(sys.stdin):
-  for name in flags.FLAGS:
-    flags.FLAGS[name].unparse()
-  said = io.StringIO()
-  with contextlib.redirect_stderr(said), contextlib.redirect_stdout(said):
-    try:
-      status = launch.run('waggle_tasks.experiments.sweep', ['sweep', *argv])
-    except Exception as error:
-      status = repr(error)
-  answers.append((status, said.getvalue(), sorted(os.listdir())))
-print(json.dumps(answers))
-"""
+# Bad input.
 FLAGS = {
   '--grid=distanc_m=1': '`grid` must be one of .* Did you mean distance_m',
   '--grid=distance_m=1,far': '`distance_m` must be of type float',
@@ -137,18 +117,13 @@ FLAGS = {
 
 @pytest.fixture(scope='module')
 def answers(
-  tmp_path_factory: pytest.TempPathFactory,
+  tmp_path_factory: pytest.TempPathFactory, ask: Callable[..., list]
 ) -> dict[str, tuple[int | str, str, list[str]]]:
   """Exit status, output and what is left of each line of `FLAGS`."""
-  done = subprocess.run(
-    [sys.executable, '-c', SCRIPT],
-    input=json.dumps([[*BRIEF, *line.split()] for line in FLAGS]),
-    capture_output=True,
-    text=True,
-    check=True,
-    cwd=tmp_path_factory.mktemp('bad'),
+  lines = [['sweep', *BRIEF, *line.split()] for line in FLAGS]
+  return dict(
+    zip(FLAGS, ask(lines, tmp_path_factory.mktemp('bad')), strict=True)
   )
-  return dict(zip(FLAGS, json.loads(done.stdout), strict=True))
 
 
 @pytest.mark.parametrize('line', FLAGS)
