@@ -7,6 +7,7 @@ import re
 import subprocess
 
 import pytest
+import suite_rows
 
 from waggle_tasks.agents import receivers
 from waggle_tasks.experiments.record import verdicts
@@ -45,11 +46,9 @@ NONE = outcome(None)
 def row(
   group: str, *outcomes: verdicts.Outcome, passed: bool = True
 ) -> case_rows.SuiteRow:
-  return case_rows.SuiteRow(
-    case='a', group=group, label='', identity='a', receiver='klt',
-    observers=len(outcomes), expecting=len(outcomes),
-    correct=sum(each.correct for each in outcomes), passed=passed,
-    simulated_s=100.0, published=None, outcomes=outcomes, scenario={},
+  return suite_rows.make(
+    group=group, observers=len(outcomes), passed=passed, outcomes=outcomes,
+    correct=sum(each.correct for each in outcomes),
   )  # fmt: skip
 
 

@@ -8,6 +8,7 @@ import re
 import subprocess
 
 import pytest
+import suite_rows
 
 from waggle_tasks import suites
 from waggle_tasks.agents import receivers
@@ -61,11 +62,9 @@ def test_open_choices_are_moved_both_ways(field: str) -> None:
 
 
 def row(case: suites.Case, correct: int, passed: bool) -> case_rows.SuiteRow:
-  return case_rows.SuiteRow(
-    case=case.name, group=case.group, label=case.label, identity='a',
-    receiver='klt', observers=case.scene.observers,
-    expecting=case.scene.observers, correct=correct, passed=passed,
-    simulated_s=100.0, published=case.published, outcomes=(), scenario={},
+  return suite_rows.make(
+    case=case.name, observers=case.scene.observers, correct=correct,
+    passed=passed, published=case.published,
   )  # fmt: skip
 
 

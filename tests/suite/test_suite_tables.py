@@ -4,6 +4,7 @@ import dataclasses
 import re
 
 import pytest
+import suite_rows
 
 from waggle_tasks import suites
 from waggle_tasks.experiments.record import verdicts
@@ -26,12 +27,11 @@ def published_row(case: suites.Case) -> Row:
     )
     for number in range(scene.observers)
   )
-  return case_rows.SuiteRow(
-    case=case.name, group=case.group, label=case.label, identity='a',
-    receiver='klt', observers=scene.observers,
-    expecting=expecting.get(scene.control, 0), correct=published.correct,
-    passed=published.passed, simulated_s=100.0, published=published,
-    outcomes=outcomes, scenario={},
+  return suite_rows.make(
+    case=case.name, group=case.group, label=case.label,
+    observers=scene.observers, expecting=expecting.get(scene.control, 0),
+    correct=published.correct, passed=published.passed, published=published,
+    outcomes=outcomes,
   )  # fmt: skip
 
 
