@@ -2,10 +2,12 @@
 
 from collections.abc import Iterable, Sequence
 import dataclasses
+import math
 import pathlib
 from typing import Any
 
 from waggle_tasks import suites
+from waggle_tasks.arenas import layouts
 from waggle_tasks.experiments.record import (
   archive,
   encoding,
@@ -144,6 +146,29 @@ class Exposure(verdicts.Account):
   seen_angle_deg: float | None = None
   seen_distance_m: float | None = None
   spoilt: str = ''
+
+  @classmethod
+  def of(
+    cls, outcome: verdicts.Outcome, pose: layouts.Pose, **more: object
+  ) -> 'Exposure':
+    """What became of one observer.
+
+    Args:
+      outcome: What its episode was.
+      pose: Where it stood.
+      **more: What else is told of it, or told otherwise.
+    """
+    x_m, y_m, _ = pose.position_m
+    told: dict[str, Any] = {
+      **vars(outcome),
+      'true_angle_deg': round(math.degrees(math.atan2(x_m, -y_m)), 6),
+      'true_distance_m': round(math.hypot(x_m, y_m), 6),
+      'right': outcome.decoded == outcome.expected,
+      'wrong': outcome.wrong,
+      'unauthorised': outcome.unauthorised,
+      'stages': tuple(each.partition(':')[0] for each in outcome.failures),
+    }
+    return cls(**told | more)
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)

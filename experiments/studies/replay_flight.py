@@ -1,49 +1,42 @@
-"""Flies one case of a sweep and shows its images again, spoilt in many ways.
+"""Flies a scenario once and shows its images again, spoilt in many ways.
 
-A flight costs more than reading its images. So a case is flown once, before
+A flight costs more than reading its images. So it is flown once, before
 observers who only watch, and then each of many receivers reads those images,
-spoilt in another way, which the case's seed and a number draw. A receiver that
-reads a message would fly it: what it read is all that counts here.
+spoilt in another way, which the scenario's seed and a number draw. A receiver
+that reads a message would fly it: what it read is all that counts here.
 """
 
 from collections.abc import Callable
 import hashlib
 
+from waggle_tasks import scenario
 from waggle_tasks.agents import receiver, receivers
 from waggle_tasks.arenas import layouts
 from waggle_tasks.experiments.episodes import evaluator
 from waggle_tasks.experiments.episodes import tape as tape_lib
 from waggle_tasks.experiments.record import verdicts
-from waggle_tasks.experiments.studies import (
-  case_rows,
-  spoilers,
-  sweep_cases,
-  sweep_flight,
-)
+from waggle_tasks.experiments.studies import case_rows, spoilers
 
 
 def fly(
-  report: Callable[[float], None],
-  case: sweep_cases.Sample,
+  scene: scenario.Scenario,
   receiver_name: str,
-  identity: str,
   replays: int,
-) -> case_rows.SweepRow:
-  """Runs a case; called in a worker.
+  report: Callable[[float], None],
+) -> tuple[str, float, list[case_rows.Exposure]]:
+  """Flies a scenario once, and shows it again and again.
 
   Args:
-    report: Told now and then how many seconds are done.
-    case: The case.
+    scene: The scenario.
     receiver_name: The receiver.
-    identity: See `identity.of`.
     replays: How many exposures each observer has.
+    report: Told now and then how many seconds are done.
 
   Returns:
-    Its row.
+    The GL renderer, how long the flight was, and the exposures.
   """
-  scene, exposures = case.scene, []
   tapes = tape_lib.record(scene, report)
-  poses = scene.poses()
+  poses, exposures = scene.poses(), []
   named = zip(layouts.names(scene.observers), tapes, strict=True)
   for number, (name, tape) in enumerate(named, 1):
     expected = evaluator.expected_bits(scene, number)
@@ -60,17 +53,14 @@ def fly(
         f'{name}, replay {replay}', expected, message, failures=failures
       )
       exposures.append(
-        sweep_flight.exposure(
+        case_rows.Exposure.of(
           outcome, poses[name], unauthorised=outcome.wrong, events=events,
           spoilt=spoiling.name,
         )
       )  # fmt: skip
       # All observers of one replay are as much as the flight.
       report((1 + len(exposures) / len(tapes)) * tape.times_s[-1])
-  return sweep_flight.whole(
-    case, receiver_name, identity, tapes[0].renderer, tapes[0].times_s[-1],
-    exposures, all(each.right for each in exposures),
-  )  # fmt: skip
+  return tapes[0].renderer, tapes[0].times_s[-1], exposures
 
 
 def _read(

@@ -7,9 +7,9 @@ import csv
 import dataclasses
 import io
 import pathlib
-from typing import Any, Generic, Protocol, TypeVar
+from typing import Any, Generic, TypeVar
 
-from waggle_tasks import scenario
+from waggle_tasks import suites
 from waggle_tasks.experiments.episodes import identity as identity_lib
 from waggle_tasks.experiments.episodes import outside
 from waggle_tasks.experiments.machine import files
@@ -19,27 +19,18 @@ from waggle_tasks.experiments.record import (
   result_folder,
   source_files,
 )
-from waggle_tasks.experiments.studies import case_rows, job_progress, pool
+from waggle_tasks.experiments.studies import (
+  case_rows,
+  job_progress,
+  pool,
+  sweep_cases,
+)
 
 # After how many cases the sources are looked at again.
 _CHECK_CASES = 50
 
 
-class Case(Protocol):
-  """One episode of a study: `suites.Case`, or `sweep_cases.Sample`."""
-
-  @property
-  def name(self) -> str:
-    """What it is called; unique in its study."""
-    ...
-
-  @property
-  def scene(self) -> scenario.Scenario:
-    """What is flown."""
-    ...
-
-
-_Case = TypeVar('_Case', bound=Case)
+_Case = TypeVar('_Case', suites.Case, sweep_cases.Sample)
 _Row = TypeVar('_Row', case_rows.SuiteRow, case_rows.SweepRow)
 
 
@@ -60,7 +51,7 @@ class Study(abc.ABC, Generic[_Case, _Row]):
       replays: How many times each observer's images are shown again, spoilt,
         see `replay_flight`; 0 to fly each case with its receivers.
     """
-    self.cases = cases
+    self.cases: Sequence[_Case] = cases
     self.receiver_name = receiver_name
     self.replays = replays
 

@@ -1,17 +1,16 @@
 """Flies one case of a sweep and makes its row."""
 
 from collections.abc import Callable, Sequence
-import math
 from typing import Any
 
 from waggle_tasks.agents import receiver
-from waggle_tasks.arenas import layouts
 from waggle_tasks.experiments.episodes import evaluator
 from waggle_tasks.experiments.episodes import rollout as rollout_lib
 from waggle_tasks.experiments.record import episode, verdicts
 from waggle_tasks.experiments.studies import (
   case_rows,
   job_progress,
+  replay_flight,
   sweep_cases,
 )
 
@@ -21,6 +20,7 @@ def fly(
   case: sweep_cases.Sample,
   receiver_name: str,
   identity: str,
+  replays: int,
 ) -> case_rows.SweepRow:
   """Runs a case; called in a worker.
 
@@ -29,10 +29,16 @@ def fly(
     case: The case.
     receiver_name: The receiver.
     identity: See `identity.of`.
+    replays: How many times the images are shown again, see `replay_flight`;
+      0 to fly with receivers.
 
   Returns:
     Its row.
   """
+  if replays:
+    shown = replay_flight.fly(case.scene, receiver_name, replays, report)
+    passed = all(each.right for each in shown[-1])
+    return _row(case, receiver_name, identity, *shown, passed)
   onlookers = [job_progress.reporter(report)]
   rollout = rollout_lib.run(case.scene, receiver_name, onlookers)
   verdict = evaluator.evaluate(case.scene, rollout)
@@ -49,18 +55,18 @@ def row(
   """A case's row, from its episode."""
   poses = case.scene.poses()
   exposures = [
-    exposure(
+    case_rows.Exposure.of(
       each, poses[each.observer], **_reading(rollout.events[each.observer])
     )
     for each in verdict.outcomes
   ]
-  return whole(
+  return _row(
     case, receiver_name, identity, rollout.renderer, rollout.times_s[-1],
     exposures, verdict.passed,
   )  # fmt: skip
 
 
-def whole(
+def _row(
   case: sweep_cases.Sample,
   receiver_name: str,
   identity: str,
@@ -69,7 +75,6 @@ def whole(
   exposures: Sequence[case_rows.Exposure],
   passed: bool,
 ) -> case_rows.SweepRow:
-  """A case's row, from its exposures."""
   return case_rows.SweepRow(
     case=case.name,
     cell=dict(case.cell),
@@ -82,29 +87,6 @@ def whole(
     outcomes=tuple(exposures),
     scenario=dict(case.values),
   )
-
-
-def exposure(
-  outcome: verdicts.Outcome, pose: layouts.Pose, **more: object
-) -> case_rows.Exposure:
-  """What became of one observer, and where it stood, seen from the performer.
-
-  Args:
-    outcome: What became of it.
-    pose: Where it stood.
-    **more: What else is told of it, or told otherwise.
-  """
-  x_m, y_m, _ = pose.position_m
-  told: dict[str, Any] = {
-    **vars(outcome),
-    'true_angle_deg': round(math.degrees(math.atan2(x_m, -y_m)), 6),
-    'true_distance_m': round(math.hypot(x_m, y_m), 6),
-    'right': outcome.decoded == outcome.expected,
-    'wrong': outcome.wrong,
-    'unauthorised': outcome.unauthorised,
-    'stages': tuple(each.partition(':')[0] for each in outcome.failures),
-  }
-  return case_rows.Exposure(**told | more)
 
 
 def _reading(events: Sequence[episode.Event]) -> dict[str, Any]:

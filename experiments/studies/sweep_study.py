@@ -16,7 +16,6 @@ from waggle_tasks.experiments.record import (
 from waggle_tasks.experiments.studies import (
   case_rows,
   pool,
-  replay_flight,
   runner,
   sweep_cases,
   sweep_flight,
@@ -66,10 +65,8 @@ class Sweep(runner.Study[sweep_cases.Sample, case_rows.SweepRow]):
   ) -> pool.Job:
     """Flies a case and makes its row."""
     del command, folder
-    arguments = case, self.receiver_name, identity
-    if not self.replays:
-      return pool.Job(case.name, sweep_flight.fly, arguments)
-    return pool.Job(case.name, replay_flight.fly, (*arguments, self.replays))
+    arguments = case, self.receiver_name, identity, self.replays
+    return pool.Job(case.name, sweep_flight.fly, arguments)
 
   @contextlib.contextmanager
   def keeping(

@@ -46,7 +46,7 @@ def engine(make: object) -> pool.Engine:
 
   def run(jobs: Jobs) -> Iterator[pool.Done]:
     for job in jobs:
-      case, _, identity = job.arguments
+      case, _, identity, _ = job.arguments
       yield pool.Done(job, make.row(case, make.well, identity))
 
   return run
