@@ -29,7 +29,6 @@ from waggle_tasks.experiments.studies import (
 # After how many cases the sources are looked at again.
 _CHECK_CASES = 50
 
-
 _Case = TypeVar('_Case', suites.Case, sweep_cases.Sample)
 _Row = TypeVar('_Row', case_rows.SuiteRow, case_rows.SweepRow)
 
@@ -60,9 +59,8 @@ class Study(abc.ABC, Generic[_Case, _Row]):
     return -case.scene.episode_s * case.scene.observers
 
   def told(self, flown: int, active: Sequence[str]) -> str:
-    """The words before the bar: how many were flown, or who is under way."""
-    del flown
-    return ', '.join(active)
+    """The words before the bar: who is under way, or how many were flown."""
+    return ', '.join(active) or f'{flown}/{len(self.cases)} cases'
 
   @abc.abstractmethod
   def known(

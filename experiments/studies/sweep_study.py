@@ -37,8 +37,7 @@ class Sweep(runner.Study[sweep_cases.Sample, case_rows.SweepRow]):
 
   def told(self, flown: int, active: Sequence[str]) -> str:
     """How many cases were flown."""
-    del active
-    return f'{flown}/{len(self.cases)} cases'
+    return super().told(flown, ())
 
   def known(
     self, folder: pathlib.Path, identities: Mapping[str, str]
