@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterator, Sequence
 import dataclasses
+import itertools
 
 import cv2
 
@@ -83,14 +84,8 @@ def difference(
   one: Sequence[str], other: Sequence[str]
 ) -> tuple[str, str] | None:
   """The first pair of lines that differ; a line that is missing is empty."""
-  for number in range(max(len(one), len(other))):
-    pair = (
-      ''.join(one[number : number + 1]),
-      ''.join(other[number : number + 1]),
-    )
-    if pair[0] != pair[1]:
-      return pair
-  return None
+  pairs = itertools.zip_longest(one, other, fillvalue='')
+  return next((pair for pair in pairs if pair[0] != pair[1]), None)
 
 
 def _fly(
