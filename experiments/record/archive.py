@@ -149,9 +149,7 @@ def read_json(path: pathlib.Path) -> dict[str, Any]:
     raise ArchiveError(f'{path} cannot be read: {error}') from None
   if not isinstance(value, dict):
     raise ArchiveError(f'{path} must hold a JSON object')
-  encoding.check_format(value, path)
-  value.pop('format', None)
-  return value
+  return encoding.unstamped(value, path)
 
 
 def read_rows(path: pathlib.Path, kind: type[_Value]) -> list[_Value]:
@@ -182,8 +180,7 @@ def rows(
   for number, table in enumerate(tables, 1):
     place = f'{path}, line {number},'
     if isinstance(table, dict):
-      encoding.check_format(table, place)
-      table = {name: table[name] for name in table if name != 'format'}
+      table = encoding.unstamped(table, place)
     out.append(_made(kind, table, place, 'row'))
   return out
 

@@ -159,21 +159,23 @@ def run(
           provenance.check_unchanged(sources, study.kind, foreign)
     provenance.check_unchanged(sources, study.kind, foreign)
     rows = [known[case.name] for case in study.cases]
-    texts = [encoding.dumps(case_rows.table(row)) for row in rows]
-    files.replace(
-      folder / case_rows.RESULTS, ''.join(f'{text}\n' for text in texts)
-    )
-    files.replace(
-      folder / case_rows.TABLE,
-      _csv([line for row in rows for line in study.lines(row)]),
-    )
+    _write(study, folder, rows)
     study.end(folder, rows, start, bool(jobs))
   return rows
 
 
-def _csv(lines: Sequence[Mapping[str, Any]]) -> str:
+def _write(
+  study: Study[_Case, _Row], folder: pathlib.Path, rows: Sequence[_Row]
+) -> None:
+  """Writes the tables."""
+  texts = [encoding.dumps(case_rows.table(row)) for row in rows]
+  lines = ''.join(f'{text}\n' for text in texts)
+  files.replace(folder / case_rows.RESULTS, lines)
+  cells: list[dict[str, Any]] = [
+    line for row in rows for line in study.lines(row)
+  ]
   text = io.StringIO()
-  writer = csv.DictWriter(text, [*lines[0]], lineterminator='\n')
+  writer = csv.DictWriter(text, [*cells[0]], lineterminator='\n')
   writer.writeheader()
-  writer.writerows(lines)
-  return text.getvalue()
+  writer.writerows(cells)
+  files.replace(folder / case_rows.TABLE, text.getvalue())
