@@ -12,13 +12,14 @@ import pathlib
 import sys
 
 from absl import flags
+import cv2
 
 from waggle_tasks.experiments import launch
 from waggle_tasks.experiments.flags import receiver_flag
 from waggle_tasks.experiments.machine import files
 from waggle_tasks.experiments.pages import rooms
 from waggle_tasks.experiments.record import folders
-from waggle_tasks.experiments.results import envelope, figures, png
+from waggle_tasks.experiments.results import envelope, figures
 from waggle_tasks.experiments.studies import case_rows
 
 _OUTPUT = flags.DEFINE_string(
@@ -46,7 +47,8 @@ def main(argv: Sequence[str]) -> int:
   from waggle_tasks.experiments.video import shots
 
   for name, picture in shots.take(_RECEIVER.value).items():
-    print(png.write(folder / name, picture))
+    _, data = cv2.imencode('.png', picture[..., ::-1])
+    print(files.replace(folder / name, data.tobytes()))
   return 0
 
 
