@@ -35,11 +35,11 @@ def v_px(time_s: float, begin_s: float) -> np.ndarray:
 
 
 def watched(
-  amount: float, seconds: float = 14.0, begin_s: float = 4.0, least_s=LEAST_S
+  amount: float, seconds: float = 14.0, begin_s: float = 4.0
 ) -> tuple[list[segmenter.Segment], list[float]]:
   """The motions of a target that dances a V, and when its nulls came."""
   cut = excursion.ExcursionSegmenter(
-    config.Excursion(), HOME_PX, WIDTH_PX, least_s=least_s
+    config.Excursion(), HOME_PX, WIDTH_PX, least_s=LEAST_S
   )
   rests = stillness.StillnessDetector(config.ABSOLUTE.stillness, 0.2)
   times_s = np.arange(0, seconds, 0.04)
