@@ -63,7 +63,9 @@ def _alike(
   yaw_deg: tuple[float, ...],
 ) -> hover.Spectrum:
   """A hover that is as strong along every axis, and in roll as in pitch."""
-  return hover.Spectrum(*[place_mm] * 3, *[tilt_deg] * 2, yaw_deg)
+  return hover.Spectrum(
+    place_mm, place_mm, place_mm, tilt_deg, tilt_deg, yaw_deg
+  )
 
 
 _YAW_DEG = (0.34, 0.12, 0.06, 0.06, 0.06, 0.06)  # Of Lighthouse.
