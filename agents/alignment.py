@@ -11,7 +11,7 @@ import dataclasses
 import cv2
 import numpy as np
 
-from waggle_tasks.agents import bands, difference, levels, turns
+from waggle_tasks.agents import bands, difference, levels, light, turns
 
 _MIN_FIT = 0.5  # Share of pixels that must.
 _MIN_RANGE = 8.0  # Grey levels; a reference of fewer tells nothing.
@@ -31,7 +31,7 @@ class Scene:
     edges: Which pixels tell of its shifts.
     small: The same of a smaller picture; None where there is no use for one.
     settles: Whether a shift that may be none is none.
-    banded: Whether rows may be brighter by themselves.
+    banded: Whether rows, or parts, may be brighter by themselves.
   """
 
   edges: levels.Edges
@@ -123,16 +123,27 @@ class Alignment:
     fit, share, scatter = self._level.solve(soft, self._guess(soft))
     if share < _MIN_FIT or not _GAINS[0] < fit[-2] < _GAINS[1]:
       self._fit = self._nothing
-      return False
+      return self._same_in_other_light(grey)
     motion_px = np.abs(fit[:-2])
     still_px = self._still_px(_DEVIATIONS * scatter)
     self._sways |= bool((motion_px > still_px).any())
     if (motion_px < (_REST_PX if self._sways else still_px)).all():
       fit[:-2] = 0.0
-    light = (fit[-2] - 1) * self._sharp + fit[-1]
-    still = not fit[:-2].any() and _little(light)
+    change = (fit[-2] - 1) * self._sharp + fit[-1]
+    still = not fit[:-2].any() and _little(change)
     self._fit = self._last = self._nothing if still else fit
     return True
+
+  def _same_in_other_light(self, grey: np.ndarray) -> bool:
+    """Whether it is the picture of a camera at rest, lit elsewise in parts."""
+    if self._sways or not self._scene.banded:
+      return False
+    evened = light.evened(self._reference, grey)
+    if evened is None:
+      return False
+    soft = difference.soften(evened)
+    fit, share, _ = self._level.solve(soft, self._nothing)
+    return share >= _MIN_FIT and bool(np.abs(fit[:-2]).max() < _STILL_PX)
 
   def _guess(self, soft: np.ndarray) -> np.ndarray:
     """About how an image differs, (n,), by a smaller one."""
@@ -156,10 +167,10 @@ class Alignment:
     scatter = levels.scatter(change)
     limit = levels.outlier(scatter)
     guess = self._level.inverse @ np.clip(change, -limit, limit)
-    light = guess[-2] * self._sharp + guess[-1]
+    relit = guess[-2] * self._sharp + guess[-1]
     still_px = self._still_px(_GUESS_DEVIATIONS * scatter)
     still = (np.abs(guess[:-2]) < still_px).all()
-    return bool(still and _little(light))
+    return bool(still and _little(relit))
 
   def _still_px(self, levels: float) -> np.ndarray:
     """The largest motions that pixels wrong by so many levels may feign."""

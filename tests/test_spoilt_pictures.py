@@ -114,6 +114,12 @@ def shadow(time_s: float) -> np.ndarray:
   return 1 - 0.1 * np.exp(-(((COLUMNS - middle) / 0.15) ** 2) / 2)
 
 
+def half(share: float, time_s: float) -> np.ndarray:
+  """One half of the picture in another light, from a hard edge on."""
+  share *= float(np.clip((time_s - 4.0) / 8.0, 0, 1))
+  return 1 + share / (1 + np.exp((COLUMNS - 0.5) / 0.02))
+
+
 SPOILERS = {
   'one pixel in two thousand for a moment': bad_pixels(0.0005, False),
   'one in a hundred for a moment': bad_pixels(0.01, False),
@@ -131,6 +137,8 @@ SPOILERS = {
     lambda t: 1 + 0.03 * np.sin(2 * np.pi * (4 * ROWS + 0.7 * t))
   ),
   'a soft shadow of 10 %': lit(shadow),
+  'a half that is 20 % brighter': lit(lambda t: half(0.2, t)),
+  'a half that is 20 % darker': lit(lambda t: half(-0.2, t)),
   'noise along rows': correlated(3.0, 1, 640),
   'noise along columns': correlated(3.0, 480, 1),
   'noise in blocks': correlated(4.0, 8, 8),
