@@ -29,7 +29,7 @@ cv2.setNumThreads(1)
 os.environ['OPENCV_FOR_THREADS_NUM'] = '1'  # Of commands that tests start.
 
 # A busy machine is slow, which is no failure.
-hypothesis.settings.register_profile('patient', deadline=None)
+hypothesis.settings.register_profile('patient', deadline=None, max_examples=60)
 hypothesis.settings.load_profile('patient')
 
 Observations = Sequence[dict[str, np.ndarray]]

@@ -13,6 +13,7 @@ READ = {
   'two_dancers': ['000010'],
   'wind': ['000010'],
 }
+LONG = ('small_fast_camera', 'wind')  # Others say nearly as much.
 
 
 def test_every_example_is_here_and_short() -> None:
@@ -25,7 +26,13 @@ def test_every_example_is_here_and_short() -> None:
   assert max(lengths.values()) < 40
 
 
-@pytest.mark.parametrize('name', READ)
+@pytest.mark.parametrize(
+  'name',
+  [
+    pytest.param(name, marks=[pytest.mark.slow] * (name in LONG))
+    for name in READ
+  ],
+)
 def test_an_example_reads_what_is_danced(
   name: str,
   monkeypatch: pytest.MonkeyPatch,

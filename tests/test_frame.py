@@ -144,7 +144,7 @@ SEQUENCES = st.lists(PIECES, min_size=1, max_size=4).map(
 )
 
 
-@hypothesis.settings(max_examples=600)
+@hypothesis.settings(max_examples=200)
 @hypothesis.given(SEQUENCES)
 def test_a_message_is_accepted_iff_the_last_17_events_are_a_whole_frame(
   events: list[Symbol],
@@ -157,7 +157,7 @@ def test_a_message_is_accepted_iff_the_last_17_events_are_a_whole_frame(
       assert outcome.payload.bits == ''.join(last[3:15:2])
 
 
-@hypothesis.settings(max_examples=600)
+@hypothesis.settings(max_examples=200)
 @hypothesis.given(SEQUENCES)
 def test_each_break_has_a_reason_and_nothing_else_has(
   events: list[Symbol],

@@ -54,8 +54,14 @@ def hidden(
 @pytest.mark.parametrize(
   'every', [5, pytest.param(2, marks=pytest.mark.slow)], ids=['few', 'many']
 )
-@pytest.mark.parametrize('name', ['klt', 'view_bank'])
-@pytest.mark.parametrize('control', HIDDEN)
+@pytest.mark.parametrize(
+  ('control', 'name'),
+  [
+    pytest.param(control, name, marks=[pytest.mark.slow] * second)
+    for number, control in enumerate(HIDDEN)
+    for second, name in enumerate(['klt', 'view_bank'][:: 1 - 2 * (number % 2)])
+  ],
+)
 def test_with_a_part_hidden_no_message_is_read(
   control: str, name: str, every: int, flown: Flown
 ) -> None:

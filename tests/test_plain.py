@@ -91,7 +91,7 @@ SCENES = st.builds(
 )  # fmt: skip
 
 
-@settings(max_examples=60)
+@settings(max_examples=25)
 @given(SCENES)
 def test_any_scenario_comes_back(scene: scenario.Scenario) -> None:
   assert plain.from_plain(scenario.Scenario, through_json(scene)) == scene

@@ -58,9 +58,8 @@ def play() -> Iterator[Callable[..., tuple]]:
     environment.close()
 
 
-@pytest.mark.parametrize(
-  'height_m', [pytest.param(1.2, marks=pytest.mark.slow), 1.5]
-)
+@pytest.mark.slow
+@pytest.mark.parametrize('height_m', [1.2, 1.5])
 def test_a_message_leads_to_the_agreed_height_for_everyone(
   height_m: float, play: Callable[..., tuple], short: dict[str, object]
 ) -> None:

@@ -432,6 +432,7 @@ def test_the_envelope(
   assert messages(events) == [bits]
 
 
+@pytest.mark.slow
 def test_a_camera_that_freezes_after_the_last_gesture_gives_no_message() -> (
   None
 ):
