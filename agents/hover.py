@@ -13,7 +13,7 @@ _CONTRAST_PX = 96  # Side of the square in which there must be something.
 _REST_PX = 128  # Side of the square in which a target rests.
 _MIN_PIXELS = 4  # Fewest pixels of a motion.
 _MAX_LEFT = 0.1  # Share of a change that a small motion may leave.
-_MATCH = 0.7  # Correlation of a target with itself, a little moved.
+_LEFT = 0.5  # The same of one that wanders, and leans meanwhile.
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -206,28 +206,45 @@ class Hover:
     where it is too, but does not go with it.
     """
     box, target = _middle(grey, _REST_PX), self._target
-    if self._slack_px:  # Where the room moves too, no more can be asked.
-      return self._matches(grey[box])
-    undone = target.step(grey[box])
-    if undone is None or not target.tells_shifts:
-      return False
-    if np.abs(target.shift_px).max() > self._config.rest_px:
-      return False
-    behind = background[box]
+    here, behind = grey[box], background[box]
+    if not self._slack_px:
+      undone = target.step(here)
+      near = np.abs(target.shift_px).max() <= self._config.rest_px
+      if undone is not None and target.tells_shifts and near:
+        change = self._change(here, behind, spread).sum()
+        left = self._change(undone, self._loose(behind), spread).sum()
+        if left <= _MAX_LEFT * change:
+          return True
+    return self._wandered(here, behind, spread)
+
+  def _loose(self, behind: difference.Background) -> difference.Background:
+    """What is behind a target that may be a little out of place."""
     loose = difference.Background(behind.grey, behind.variance)
     loose.loosen(self._config.slack_px)
-    change = self._change(grey[box], behind, spread).sum()
-    left = self._change(undone, loose, spread).sum()
-    return bool(left <= _MAX_LEFT * change)
+    return loose
 
-  def _matches(self, grey: np.ndarray) -> bool:
-    """Whether the place of rest looks as it did, but for a little way."""
+  def _wandered(
+    self, here: np.ndarray, behind: difference.Background, spread: float
+  ) -> bool:
+    """Whether the target is as it was, a little aside.
+
+    It may lean a little more or less, and the room may move too, so that more
+    of the change is left.
+    """
     far_px = math.ceil(self._config.rest_px)
-    inside = slice(far_px, -far_px)
-    match = cv2.matchTemplate(
-      grey, self._rest[inside, inside], cv2.TM_CCOEFF_NORMED
-    )
-    return bool(match.max() >= _MATCH)
+    middle = slice(far_px, -far_px)
+    inside = middle, middle
+    match = cv2.matchTemplate(here, self._rest[inside], cv2.TM_CCOEFF_NORMED)
+    _, _, _, (left, top) = cv2.minMaxLoc(match)
+    if not (0 < left < 2 * far_px and 0 < top < 2 * far_px):
+      return False
+    height, width = here.shape
+    moved = here[
+      top : top + height - 2 * far_px, left : left + width - 2 * far_px
+    ]
+    known = self._loose(behind)[inside]
+    change = self._change(here[inside], known, spread).sum()
+    return bool(self._change(moved, known, spread).sum() <= _LEFT * change)
 
   def _separate(
     self,
