@@ -24,6 +24,7 @@ class Observer(crazyflie.Crazyflie):
     eye_offset_m: float = optics.OFFSET_M,
     sensor: sensor_lib.Sensor = sensor_lib.Sensor(),
     agreement: agreement_lib.Agreement = agreement_lib.Agreement(),
+    dynamics: str = 'ideal',
   ) -> None:
     """Builds the model.
 
@@ -33,8 +34,9 @@ class Observer(crazyflie.Crazyflie):
       eye_offset_m: How far the eye is ahead of the centre of mass.
       sensor: What spoils its images.
       agreement: What both sides know: its camera and its rate.
+      dynamics: One of `limits.DYNAMICS`.
     """
-    super()._build(name, crazyflie.AZURE)
+    super()._build(name, crazyflie.AZURE, dynamics == 'rotors')
     self._incremental = camera == 'incremental'
     self._eye = self.airframe.add(
       'camera', name='eye', pos=(eye_offset_m, 0, 0),

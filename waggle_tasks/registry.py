@@ -34,12 +34,13 @@ def parts(scenario: Scenario) -> parts_lib.Parts:
       scenario.eye_offset_m,
       sensor,
       agreement,
+      scenario.dynamics,
     )
     for number, sensor in enumerate(scenario.sensors, 1)
   )
   made = parts_lib.Parts(
     room=flight_room.FlightRoom(scenario.appearance, agreement=agreement),
-    performer=performer.Performer(),
+    performer=performer.Performer(dynamics=scenario.dynamics),
     observers=observers,
     poses=scenario.poses(),
     performance=scenario.performance,
@@ -47,8 +48,12 @@ def parts(scenario: Scenario) -> parts_lib.Parts:
     agreement=agreement,
     jitter_m=scenario.jitter_m,
     drift=scenario.drift,
+    dynamics=scenario.dynamics,
   )
-  furnish.furnish(made.room, scenario.surroundings, made.poses, agreement)
+  furnish.furnish(
+    made.room, scenario.surroundings, made.poses, agreement,
+    scenario.dynamics == 'rotors',
+  )  # fmt: skip
   return made
 
 

@@ -65,6 +65,9 @@ class Scenario:
     units: The agreed fields of the payload.
     appearance: How the room looks.
     surroundings: What else moves in it.
+    dynamics: How vehicles fly, one of `limits.DYNAMICS`: 'ideal' forces of the
+      paper, which never tilt a vehicle, or four 'rotors' with their lag, under
+      a cascade of laws and with drag.
     drift: How far vehicles wander from where they should be.
     sensor: What spoils the observers' images.
     rate_hz: How many images and references there are in a second: 250 over a
@@ -100,6 +103,7 @@ class Scenario:
   units: payload_lib.Units = payload_lib.Units()
   appearance: appearance_lib.Appearance = appearance_lib.Appearance()
   surroundings: surroundings_lib.Surroundings = surroundings_lib.Surroundings()
+  dynamics: str = 'ideal'
   drift: drift_lib.Drift = drift_lib.Drift()
   sensor: sensor_lib.Sensor = sensor_lib.Sensor()
   rate_hz: float = agreement_lib.Agreement.rate_hz
@@ -119,6 +123,7 @@ class Scenario:
           f' got {value!r}'
         )
     checks.choice('control', self.control, CONTROLS, ScenarioError)
+    checks.choice('dynamics', self.dynamics, limits_lib.DYNAMICS, ScenarioError)
     checks.choice('camera', self.camera, optics.CAMERAS, ScenarioError)
     counts = {
       'observers': (1, MAX_OBSERVERS),
@@ -148,7 +153,7 @@ class Scenario:
     if self.duration_s is None:
       del limits['duration_s']
     checks.settle_numbers(self, limits, ScenarioError)
-    limits_lib.check_codebook(self.codebook)
+    limits_lib.check_codebook(self.codebook, limits_lib.LIMITS[self.dynamics])
     self._check_height()
     payload_lib.Payload.from_bits(self.payload, self.units)
     self.surroundings.check(self.poses(), self.units.reach_m)

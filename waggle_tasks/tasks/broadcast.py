@@ -53,8 +53,9 @@ class Broadcast(copies.Uncopied, composer.Task):
     self._dancers = parts.dancers
     dancing = {name: each.vehicle for name, each in self._dancers.items()}
     self._fleet = fleet.Fleet(
-      parts.room, {**dancing, **self._observers}, parts.poses
-    )
+      parts.room, {**dancing, **self._observers}, parts.poses,
+      parts.dynamics, parts.agreement.frame_s,
+    )  # fmt: skip
     for visible in self.observables:
       for name in OBSERVATIONS:
         visible[name].enabled = True
@@ -138,6 +139,7 @@ class Broadcast(copies.Uncopied, composer.Task):
     """
     switches.check(self, self.observers, physics)
     self._fleet.place(physics, self._parts.jitter_m, random_state)
+    self._fleet.begin(physics)
     drift = self._parts.drift
     self._fleet.let_drift(
       {name: drift.performer(random_state) for name in self._dancers}
@@ -214,6 +216,16 @@ class Broadcast(copies.Uncopied, composer.Task):
     self._clock.set(physics)
     self._begin_flights()
     physics.forward()
+
+  def before_substep(
+    self,
+    physics: mjcf.Physics,
+    action: Sequence[np.ndarray],
+    random_state: np.random.RandomState,
+  ) -> None:
+    """Flies on, with dynamics that ask for it."""
+    del action, random_state
+    self._fleet.before_substep(physics)
 
   def after_substep(
     self, physics: mjcf.Physics, random_state: np.random.RandomState

@@ -7,7 +7,8 @@ from dm_control import mjcf
 import numpy as np
 
 from waggle_tasks.arenas import flight_room, layouts
-from waggle_tasks.entities import controller, crazyflie
+from waggle_tasks.entities import autopilot, controller, crazyflie
+from waggle_tasks.protocol import agreement as agreement_lib
 from waggle_tasks.tasks import drift as drift_lib
 
 Offsets = dict[str, tuple[np.ndarray, np.ndarray]]
@@ -25,6 +26,8 @@ class Fleet:
     room: flight_room.FlightRoom,
     vehicles: Mapping[str, crazyflie.Crazyflie],
     poses: Mapping[str, layouts.Pose],
+    dynamics: str = 'ideal',
+    frame_s: float = agreement_lib.Agreement().frame_s,
   ) -> None:
     """Puts the vehicles into a room.
 
@@ -32,16 +35,25 @@ class Fleet:
       room: The room.
       vehicles: The vehicles by name.
       poses: Where each starts.
+      dynamics: One of `limits.DYNAMICS`.
+      frame_s: How long a control step is.
     """
     self._vehicles, self._poses = dict(vehicles), poses
-    self._joints, self._controllers = [], {}
-    for name, vehicle in self._vehicles.items():
-      pose = poses[name]
-      attached = room.add_vehicle(vehicle, pose)
-      self._joints.append(attached.freejoint)
-      self._controllers[name] = controller.Controller(
-        room.mjcf_model, vehicle, pose.yaw_rad
+    attached = [room.add_vehicle(v, poses[n]) for n, v in vehicles.items()]
+    self._joints = [each.freejoint for each in attached]
+    yaws_rad = {name: poses[name].yaw_rad for name in vehicles}
+    self._autopilot: autopilot.Autopilot | None = None
+    self._controllers: dict[str, controller.Controller | autopilot.Seat] = {}
+    if dynamics == 'rotors':
+      self._autopilot = autopilot.Autopilot(
+        room.mjcf_model, vehicles, [*yaws_rad.values()], frame_s
       )
+      self._controllers |= self._autopilot.seats
+    else:
+      for name, vehicle in vehicles.items():
+        self._controllers[name] = controller.Controller(
+          room.mjcf_model, vehicle, yaws_rad[name]
+        )
     self.homes: dict[str, layouts.Pose] = {}
 
   def after_compile(self, physics: mjcf.Physics) -> None:
@@ -49,8 +61,11 @@ class Fleet:
     joints, axes = physics.bind(self._joints).element_id, np.arange(3)
     self._places = physics.model.jnt_qposadr[joints][:, None] + axes  # (N, 3)
     self._rates = physics.model.jnt_dofadr[joints][:, None] + axes  # (N, 3)
+    if self._autopilot:
+      self._autopilot.after_compile(physics)
     for each in self._controllers.values():
-      each.after_compile(physics)
+      if isinstance(each, controller.Controller):
+        each.after_compile(physics)
 
   def place(
     self,
@@ -76,6 +91,16 @@ class Fleet:
         np.array(pose.position_m),
         np.array([math.cos(half_rad), 0.0, 0.0, math.sin(half_rad)]),
       )
+
+  def begin(self, physics: mjcf.Physics) -> None:
+    """Begins an episode, with every vehicle at its place."""
+    if self._autopilot:
+      self._autopilot.begin(physics)
+
+  def before_substep(self, physics: mjcf.Physics) -> None:
+    """Flies what has to be flown from one physics step to the next."""
+    if self._autopilot:
+      self._autopilot.before_substep(physics)
 
   def let_drift(self, wanders: Mapping[str, drift_lib.Wander]) -> None:
     """Takes how each vehicle drifts in an episode."""

@@ -45,6 +45,7 @@ class Parts:
     minimum_spacing_m: Smallest distance allowed between two vehicles.
     drift: How far vehicles wander from their references.
     others: Vehicles that dance beside the performer.
+    dynamics: One of `limits.DYNAMICS`, that which all vehicles were built for.
   """
 
   room: flight_room.FlightRoom
@@ -58,6 +59,7 @@ class Parts:
   minimum_spacing_m: float = safety.MINIMUM_SPACING_M
   drift: drift_lib.Drift = drift_lib.Drift()
   others: tuple[Dancer, ...] = ()
+  dynamics: str = 'ideal'
 
   def __post_init__(self) -> None:
     vehicles = [self.performer, *self.observers]

@@ -1,0 +1,59 @@
+"""Attitudes of many vehicles: quaternions from body to world, (N, 4).
+
+A heading is the turn about the body's z axis that remains when the tilt is
+undone the shortest way.
+"""
+
+import numpy as np
+
+
+def thrusting(force: np.ndarray, yaw_rad: np.ndarray) -> np.ndarray:
+  """Attitudes (N, 4) whose z axes point along forces (N, 3).
+
+  Args:
+    force: World axes, above the horizon; any unit.
+    yaw_rad: (N,) headings.
+  """
+  axis = force / np.sqrt((force**2).sum(axis=1))[:, None]
+  cosine = np.sqrt((1 + axis[:, 2]) / 2)  # Of half the tilt.
+  x, y = -axis[:, 1] / (2 * cosine), axis[:, 0] / (2 * cosine)
+  c, s = np.cos(yaw_rad / 2), np.sin(yaw_rad / 2)
+  return np.stack([cosine * c, x * c + y * s, y * c - x * s, cosine * s], 1)
+
+
+def heading(quaternion: np.ndarray) -> np.ndarray:
+  """Headings (N,) of attitudes (N, 4)."""
+  return 2 * np.arctan2(quaternion[:, 3], quaternion[:, 0])
+
+
+def turned(quaternion: np.ndarray, turn_rad: np.ndarray) -> np.ndarray:
+  """Attitudes (N, 4) turned by small angles (N, 3) about the body's axes."""
+  w, v = quaternion[:, :1], quaternion[:, 1:]
+  half = turn_rad / 2
+  scalar = w - (v * half).sum(axis=1)[:, None]
+  out = np.concatenate([scalar, v + w * half + np.cross(v, half)], axis=1)
+  return out / np.sqrt((out**2).sum(axis=1))[:, None]
+
+
+def error(goal: np.ndarray) -> np.ndarray:
+  """Matrices (N, 3, 4) that make an error (N, 3) of an attitude.
+
+  Args:
+    goal: (N, 4) attitudes.
+
+  Returns:
+    What makes the vector of conj(goal) q of a quaternion q: half of the small
+    turn, about the body's axes, that leads from the goal to it.
+  """
+  return (goal @ _VECTOR).reshape(-1, 3, 4)
+
+
+def _vector() -> np.ndarray:  # (4, 12)
+  out = np.zeros((4, 3, 4))
+  for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
+    out[0, i, i + 1], out[i + 1, i, 0] = 1, -1
+    out[j + 1, i, k + 1], out[k + 1, i, j + 1] = -1, 1
+  return out.reshape(4, 12)
+
+
+_VECTOR = _vector()

@@ -1,0 +1,213 @@
+"""The laws that fly vehicles with four rotors: position, attitude, mixer.
+
+A cascade: an outer law turns errors of position into the thrust that is wanted,
+and so into an attitude; an inner one turns errors of attitude and body rates
+into torques; a mixer shares them among the rotors. All vehicles are rows of the
+same arrays. The inner law is linear in the quaternion and the rates as long as
+the wanted attitude stays, so that it is one product of matrices each time.
+
+Gains. Near hover, and within the limits, a vehicle is a chain of integrators
+behind its rotors: thrust, rate, attitude, velocity, position. Its rotors lag by
+`rotors.LAG_S`, which alone would leave no room for an attitude loop faster than
+a third of 1 / lag. So they are given lead: a command beyond the wanted thrust,
+from the thrust that they have by their own model, as the differential part of
+the stock firmware's rate loop gives it. The gains then put the six poles of a
+horizontal axis, integral included, at `_POLES`; the weaker yaw has `_YAW`.
+"""
+
+import dataclasses
+import math
+
+import numpy as np
+
+from waggle_tasks.entities import attitudes, crazyflie, mixer, rotors
+
+GRAVITY_MPS2 = 9.81
+# The stock firmware's, as is the speed.
+TILT_RAD = math.radians(20.0)
+_SPEED_MPS = 1.0
+# Of each axis: the integral, position, attitude and the rotors with their lead.
+_POLES = (-1.2, -4 + 2j, -4 - 2j, -14 + 9j, -14 - 9j, -22.0)
+_YAW = (-4.0, -6.0)
+_YAW_ERROR_RAD = 0.3  # More is turned step by step: yaw has little torque.
+# What the integral makes up for: wind, and thrust that is not as commanded.
+# Errors beyond so much are those of a reference that jumped.
+_INTEGRAL_MPS2, _NEAR_M = 3.0, 0.03
+# Of all rotors together, so that each has some left for torques.
+_SHARE = 0.9
+_TOTAL_N = (
+  4 * (rotors.THRUST_N[0] / _SHARE + 0.004),
+  4 * _SHARE * rotors.THRUST_N[1],
+)
+_UP = np.array([0.0, 0.0, 1.0])
+
+
+def _gains(poles: tuple[complex, ...]) -> tuple[float, ...]:
+  """Lead in 1/s, and gains: rate, attitude, velocity, position, integral."""
+  lead, *rest = np.poly(poles)[1:].real
+  rate, attitude = rest[0] / lead, rest[1] / lead
+  return lead, rate, attitude, *(each / rest[1] for each in rest[2:])
+
+
+_LEAD_S, _RATE_S, _ATTITUDE_S2, *_PLACE = _gains(_POLES)
+_VELOCITY_S, _POSITION_S2, _INTEGRAL_S3 = _PLACE
+_YAW_RATE_S, _YAW_S2 = np.poly(_YAW)[1:].real
+_INERTIA = np.array(crazyflie.INERTIA_KG_M2)
+_STIFFNESS = 2 * _INERTIA * (_ATTITUDE_S2, _ATTITUDE_S2, _YAW_S2)  # (3,)
+_DAMPING = _INERTIA * (_RATE_S, _RATE_S, _YAW_RATE_S)  # (3,)
+_DRAG_S = rotors.DRAG_NS_M / crazyflie.MASS_KG
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class Wanted:
+  """Where N vehicles should be now, by their references.
+
+  Attributes:
+    position_m: (N, 3).
+    velocity_mps: (N, 3).
+    acceleration_mps2: (N, 3).
+    jerk_mps3: (N, 3).
+    yaw_rad: (N,).
+  """
+
+  position_m: np.ndarray
+  velocity_mps: np.ndarray
+  acceleration_mps2: np.ndarray
+  jerk_mps3: np.ndarray
+  yaw_rad: np.ndarray
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class Law:
+  """Thrust and torques until the outer law is asked again.
+
+  Attributes:
+    constant: (N, 4) thrust in N and torques in N m.
+    gains: (N, 4, 7) what the quaternion and the body rates take from them.
+  """
+
+  constant: np.ndarray
+  gains: np.ndarray
+
+  def command(
+    self,
+    quaternion: np.ndarray,  # (N, 4)
+    rate_rad_s: np.ndarray,  # (N, 3)
+    thrust_n: np.ndarray,  # (N, 4)
+  ) -> np.ndarray:
+    """What rotors (N, 4) are told, in N, for the coming physics step.
+
+    Args:
+      quaternion: Attitudes.
+      rate_rad_s: Body rates.
+      thrust_n: Thrusts that rotors have.
+    """
+    state = np.concatenate([quaternion, rate_rad_s], axis=1)
+    taken = (self.gains @ state[:, :, None])[:, :, 0]
+    return mixer.lead(mixer.mix(self.constant - taken), thrust_n, _LEAD_S)
+
+
+def accelerate(
+  wanted: Wanted,
+  position_m: np.ndarray,  # (N, 3)
+  velocity_mps: np.ndarray,  # (N, 3)
+  integral_mps2: np.ndarray,  # (N, 3)
+  period_s: float,
+) -> np.ndarray:  # (N, 3)
+  """The outermost law: the acceleration that leads back to the reference.
+
+  Args:
+    wanted: The references.
+    position_m: Where vehicles take themselves to be.
+    velocity_mps: Their velocities, the same.
+    integral_mps2: What errors have added up to; it is brought up to date.
+    period_s: Time since it was asked last.
+
+  Returns:
+    World m/s^2; drag at the wanted velocity is made up for, as by Faessler and
+    others, doi:10.1109/LRA.2017.2776353.
+  """
+  most_m = _VELOCITY_S / _POSITION_S2 * _SPEED_MPS
+  error_m = _within(wanted.position_m - position_m, most_m)
+  integral_mps2 += _INTEGRAL_S3 * period_s * _within(error_m, _NEAR_M)
+  integral_mps2[:] = _within(integral_mps2, _INTEGRAL_MPS2)
+  return (
+    wanted.acceleration_mps2
+    + _DRAG_S * wanted.velocity_mps
+    + _VELOCITY_S * (wanted.velocity_mps - velocity_mps)
+    + _POSITION_S2 * error_m
+    + integral_mps2
+  )
+
+
+def force(acceleration_mps2: np.ndarray) -> np.ndarray:
+  """Thrust for each kilogram that gives an acceleration, within the limits.
+
+  Args:
+    acceleration_mps2: (N, 3) world m/s^2.
+
+  Returns:
+    (N, 3) world m/s^2, gravity made up for; tilted by `TILT_RAD` at most.
+  """
+  out = acceleration_mps2 + GRAVITY_MPS2 * _UP
+  low, high = (each / crazyflie.MASS_KG for each in _TOTAL_N)
+  up = np.minimum(np.maximum(out[:, 2], low), high * math.cos(TILT_RAD))
+  out[:, 2] = up
+  aside = np.hypot(out[:, 0], out[:, 1])
+  most = math.tan(TILT_RAD) * up
+  out[:, :2] *= (most / np.maximum(aside, most))[:, None]
+  return out
+
+
+def law(
+  force_mps2: np.ndarray,  # (N, 3)
+  wanted: Wanted,
+  quaternion: np.ndarray,  # (N, 4)
+  rotation: np.ndarray,  # (N, 3, 3)
+  error_rad: np.ndarray | None = None,  # (N, 3)
+) -> Law:
+  """The inner law that turns vehicles towards forces and headings.
+
+  Args:
+    force_mps2: Thrust for each kilogram.
+    wanted: The references.
+    quaternion: The attitudes.
+    rotation: The same, from body to world.
+    error_rad: How far vehicles take themselves to be turned from there, about
+      the body's axes.
+  """
+  if error_rad is not None:
+    quaternion = attitudes.turned(quaternion, error_rad)
+  yaw_rad = attitudes.heading(quaternion)
+  turn_rad = np.remainder(wanted.yaw_rad - yaw_rad + math.pi, math.tau)
+  turn_rad = _within(turn_rad - math.pi, _YAW_ERROR_RAD)
+  goal = attitudes.thrusting(force_mps2, yaw_rad + turn_rad)
+  goal *= np.sign((goal * quaternion).sum(axis=1))[:, None]
+  if error_rad is not None:  # There, they take themselves to be at the goal.
+    goal = attitudes.turned(goal, -error_rad)
+  rate = _body_rate(force_mps2, wanted.jerk_mps3, rotation)
+  count = len(goal)
+  gains = np.zeros((count, 4, 7))
+  gains[:, 1:, :4] = _STIFFNESS[:, None] * attitudes.error(goal)
+  gains[:, (1, 2, 3), (4, 5, 6)] = _DAMPING
+  constant = np.empty((count, 4))
+  thrust_n = crazyflie.MASS_KG * (force_mps2 * rotation[:, :, 2]).sum(axis=1)
+  constant[:, 0] = np.minimum(np.maximum(thrust_n, _TOTAL_N[0]), _TOTAL_N[1])
+  constant[:, 1:] = _DAMPING * rate
+  return Law(constant, gains)
+
+
+def _body_rate(
+  force_mps2: np.ndarray, jerk_mps3: np.ndarray, rotation: np.ndarray
+) -> np.ndarray:
+  """Rates (N, 3) at which a body turns to follow a force that changes."""
+  if not jerk_mps3.any():
+    return np.zeros_like(jerk_mps3)
+  squared = (force_mps2**2).sum(axis=1)[:, None]
+  turning = np.cross(force_mps2, jerk_mps3) / squared
+  return (turning[:, None] @ rotation)[:, 0]
+
+
+def _within(values: np.ndarray, most: float) -> np.ndarray:
+  """Values from -most to most; numpy's own `clip` takes three times as long."""
+  return np.minimum(np.maximum(values, -most), most)
