@@ -58,8 +58,15 @@ class Seat:
     velocity_mps: np.ndarray,  # (3,)
     acceleration_mps2: np.ndarray,  # (3,)
     turn_rad: float = 0.0,
+    attitude_rad: np.ndarray | None = None,  # (3, 3)
   ) -> None:
-    """Sets the reference of the coming control step; see `Controller`."""
+    """Sets the reference of the coming control step; see `Controller`.
+
+    Of an attitude, roll, pitch and yaw, only yaw can be asked for: the others
+    follow from the flight.
+    """
+    if attitude_rad is not None:
+      turn_rad += attitude_rad[0, 2]
     motion = position_m, velocity_mps, acceleration_mps2
     self._autopilot.take(physics, self._number, motion, turn_rad)
 
@@ -164,6 +171,16 @@ class Autopilot:
       self._qvel[self._rates],
       self._act[self._acts],
     )
+
+  @property
+  def thrusts_n(self) -> np.ndarray:
+    """(N, 4) thrusts of the rotors."""
+    return self._act[self._acts]
+
+  @property
+  def tilts_rad(self) -> np.ndarray:
+    """(N,) how far each vehicle is from level."""
+    return np.arccos(np.clip(self._xmat[self._bodies, 8], -1.0, 1.0))
 
   def _aim(self, time_s: float, begins: bool) -> None:
     """Asks the outer law."""

@@ -15,6 +15,7 @@ class Observer(crazyflie.Crazyflie):
 
   Attributes:
     sensor: What spoils its images, from the next episode on.
+    error_m: (3,) how far from itself it takes itself to be.
   """
 
   def _build(  # type: ignore[override]
@@ -46,6 +47,7 @@ class Observer(crazyflie.Crazyflie):
     self._agreement = agreement
     self.sensor = sensor
     self._feed: feed.Feed | None = None
+    self.error_m = np.zeros(3)
 
   def _build_observables(self) -> 'ObserverObservables':
     return ObserverObservables(self)
@@ -91,6 +93,10 @@ class Observer(crazyflie.Crazyflie):
     """What comes of the eye's picture now, (H, W, 3) uint8 each."""
     return picture if self._feed is None else self._feed.image(picture)
 
+  def estimate_m(self, physics: mjcf.Physics) -> np.ndarray:
+    """(3,) where it takes itself to be, world metres."""
+    return physics.bind(self.centre).xpos + self.error_m
+
   def image_time_s(self, physics: mjcf.Physics) -> np.ndarray:
     """The time, (), that the image that comes now is told to be of."""
     if self._feed is None:
@@ -111,6 +117,11 @@ class ObserverObservables(crazyflie.CrazyflieObservables):
     """Image of the eye: (H, W, 3) uint8 RGB."""
     entity = self._entity
     return eye.EyeCamera(entity.eye, entity.incremental, entity.spoil)
+
+  @composer.observable
+  def position_m(self) -> observable.Generic:  # type: ignore[override]
+    """Where it takes itself to be: (3,) float64, metres."""
+    return observable.Generic(self._entity.estimate_m)
 
   @composer.observable
   def time_s(self) -> observable.Generic:

@@ -49,6 +49,8 @@ def parts(scenario: Scenario) -> parts_lib.Parts:
     jitter_m=scenario.jitter_m,
     drift=scenario.drift,
     dynamics=scenario.dynamics,
+    air=scenario.air,
+    estimator=scenario.estimator,
   )
   furnish.furnish(
     made.room, scenario.surroundings, made.poses, agreement,

@@ -14,8 +14,9 @@ from waggle_tasks.protocol import checks, clock, controls, gestures, timing
 from waggle_tasks.protocol import limits as limits_lib
 from waggle_tasks.protocol import payload as payload_lib
 from waggle_tasks.protocol import performance as performance_lib
+from waggle_tasks.tasks import air as air_lib
 from waggle_tasks.tasks import drift as drift_lib
-from waggle_tasks.tasks import safety
+from waggle_tasks.tasks import estimators, safety
 from waggle_tasks.tasks import surroundings as surroundings_lib
 
 CONTROLS = controls.CONTROLS
@@ -68,6 +69,10 @@ class Scenario:
     dynamics: How vehicles fly, one of `limits.DYNAMICS`: 'ideal' forces of the
       paper, which never tilt a vehicle, or four 'rotors' with their lag, under
       a cascade of laws and with drag.
+    air: What the air does; only rotors feel it.
+    estimator: How vehicles with rotors know where they are, one of
+      `estimators.ESTIMATORS`: 'none' is the truth, with others they wander as
+      real ones do, and `position_m` is what they take for the truth.
     drift: How far vehicles wander from where they should be.
     sensor: What spoils the observers' images.
     rate_hz: How many images and references there are in a second: 250 over a
@@ -104,6 +109,8 @@ class Scenario:
   appearance: appearance_lib.Appearance = appearance_lib.Appearance()
   surroundings: surroundings_lib.Surroundings = surroundings_lib.Surroundings()
   dynamics: str = 'ideal'
+  air: air_lib.Air = air_lib.Air()
+  estimator: str = 'none'
   drift: drift_lib.Drift = drift_lib.Drift()
   sensor: sensor_lib.Sensor = sensor_lib.Sensor()
   rate_hz: float = agreement_lib.Agreement.rate_hz
@@ -124,6 +131,10 @@ class Scenario:
         )
     checks.choice('control', self.control, CONTROLS, ScenarioError)
     checks.choice('dynamics', self.dynamics, limits_lib.DYNAMICS, ScenarioError)
+    checks.choice(
+      'estimator', self.estimator, estimators.ESTIMATORS, ScenarioError
+    )
+    self._check_dynamics()
     checks.choice('camera', self.camera, optics.CAMERAS, ScenarioError)
     counts = {
       'observers': (1, MAX_OBSERVERS),
@@ -235,6 +246,20 @@ class Scenario:
     nearer_m = 2 * math.hypot(self.jitter_m, self.jitter_m) + self.drift.near_m
     layouts.check_spacing(poses, safety.MINIMUM_SPACING_M + nearer_m)
     return poses
+
+  def _check_dynamics(self) -> None:
+    """Refuses what ideal forces, which are told the truth, do not feel."""
+    asked = {
+      'estimator': self.estimator != 'none',
+      'wind_mps': bool(self.air.wind_mps),
+      'downwash': self.air.downwash,
+    }
+    for field, is_asked in asked.items():
+      if is_asked and self.dynamics != 'rotors':
+        raise ScenarioError(
+          f'`{field}` must not be given with `dynamics` {self.dynamics!r}, which'
+          " feel no air and know where they are: choose 'rotors'"
+        )
 
   def _check_exposure(self, frame_s: float) -> None:
     """Refuses one that takes longer than from one image to the next."""

@@ -14,6 +14,7 @@ from waggle_tasks.tasks import (
   actions,
   contacts,
   copies,
+  estimators,
   fleet,
   flights,
   safety,
@@ -139,17 +140,38 @@ class Broadcast(copies.Uncopied, composer.Task):
     """
     switches.check(self, self.observers, physics)
     self._fleet.place(physics, self._parts.jitter_m, random_state)
-    self._fleet.begin(physics)
     drift = self._parts.drift
     self._fleet.let_drift(
       {name: drift.performer(random_state) for name in self._dancers}
       | {name: drift.observer(random_state) for name in self._observers}
     )
+    self._take_off(physics, random_state)
     self._clock = clock_lib.Clock(physics, self.agreement)
+    self._tell()
     for each in self._dancers.values():
       each.vehicle.perform(each.performance.schedule)
       each.vehicle.stop(each.performance.stop_s)
     self._begin_flights()
+
+  def _take_off(
+    self, physics: mjcf.Physics, random_state: np.random.RandomState
+  ) -> None:
+    """Lets the vehicles fly, in the air and by the estimates of an episode."""
+    parts = self._parts
+    air = parts.air.weather(
+      self.agreement.hover_height_m, parts.duration_s, random_state
+    )
+    count = len(self._dancers) + len(self._observers)
+    belief = estimators.draw(
+      parts.estimator, count, parts.duration_s, random_state
+    )
+    self._fleet.begin(physics, air, belief)
+
+  def _tell(self) -> None:
+    """Lets observers know what they take for their places."""
+    errors_m = self.errors_m()
+    for name, each in self._observers.items():
+      each.error_m = errors_m[name]
 
   def _begin_flights(self) -> None:
     """Lets every observer wait at its place."""
@@ -241,6 +263,7 @@ class Broadcast(copies.Uncopied, composer.Task):
     """Takes stock of the step."""
     del random_state
     self._clock.tick(physics)
+    self._tell()
     self._contacts = tuple(sorted(self._touched))
     drifts = self._fleet.drifts(self._clock.time_s)
     positions_m = self.positions_m(physics)
@@ -266,6 +289,10 @@ class Broadcast(copies.Uncopied, composer.Task):
     """
     drifts = self._fleet.drifts(self._clock.time_s)
     return {name: place for name, (place, _) in drifts.items()}
+
+  def errors_m(self) -> dict[str, np.ndarray]:
+    """How far from itself each vehicle takes itself to be, (3,), by name."""
+    return self._fleet.errors_m(self._clock.time_s)
 
   @property
   def contacts(self) -> tuple[tuple[str, str], ...]:

@@ -92,10 +92,22 @@ class Fleet:
         np.array([math.cos(half_rad), 0.0, 0.0, math.sin(half_rad)]),
       )
 
-  def begin(self, physics: mjcf.Physics) -> None:
-    """Begins an episode, with every vehicle at its place."""
+  def begin(
+    self,
+    physics: mjcf.Physics,
+    air: autopilot.Air = autopilot.Air(),
+    belief: autopilot.Belief = autopilot.Belief(),
+  ) -> None:
+    """Begins an episode, with every vehicle at its place.
+
+    Args:
+      physics: The compiled model.
+      air: What the air does.
+      belief: What vehicles know of themselves, in their order.
+    """
+    self._air, self._belief = air, belief
     if self._autopilot:
-      self._autopilot.begin(physics)
+      self._autopilot.begin(physics, air, belief)
 
   def before_substep(self, physics: mjcf.Physics) -> None:
     """Flies what has to be flown from one physics step to the next."""
@@ -140,6 +152,13 @@ class Fleet:
     """True velocity of every vehicle, (3,) world m/s, by its name."""
     velocities = physics.data.qvel[self._rates]
     return dict(zip(self._vehicles, velocities, strict=True))
+
+  def errors_m(self, time_s: float) -> dict[str, np.ndarray]:
+    """How far from itself each vehicle takes itself to be, (3,), by name."""
+    errors = self._belief.errors(time_s)
+    nothing = np.zeros((len(self._vehicles), 3))
+    places_m = nothing if errors is None else errors[0]
+    return dict(zip(self._vehicles, places_m, strict=True))
 
   def drifts(self, time_s: float) -> Offsets:
     """Drift and its velocity at a time, (3,) each, by vehicle."""

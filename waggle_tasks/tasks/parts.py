@@ -8,6 +8,7 @@ from waggle_tasks.arenas import flight_room, layouts
 from waggle_tasks.entities import observer, performer
 from waggle_tasks.protocol import agreement as agreement_lib
 from waggle_tasks.protocol import performance as performance_lib
+from waggle_tasks.tasks import air as air_lib
 from waggle_tasks.tasks import drift as drift_lib
 from waggle_tasks.tasks import safety
 
@@ -46,6 +47,8 @@ class Parts:
     drift: How far vehicles wander from their references.
     others: Vehicles that dance beside the performer.
     dynamics: One of `limits.DYNAMICS`, that which all vehicles were built for.
+    air: What the air does, where vehicles have rotors.
+    estimator: How they know where they are: one of `estimators.ESTIMATORS`.
   """
 
   room: flight_room.FlightRoom
@@ -60,6 +63,8 @@ class Parts:
   drift: drift_lib.Drift = drift_lib.Drift()
   others: tuple[Dancer, ...] = ()
   dynamics: str = 'ideal'
+  air: air_lib.Air = air_lib.Air()
+  estimator: str = 'none'
 
   def __post_init__(self) -> None:
     vehicles = [self.performer, *self.observers]
