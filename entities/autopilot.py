@@ -98,6 +98,7 @@ class Autopilot:
     self._reference = np.zeros((3, count, 3))
     self._turns_rad = np.zeros(count)
     self._jerk = np.zeros((count, 3))
+    self._air_mps = np.zeros((count, 3))
 
   def after_compile(self, physics: mjcf.Physics) -> None:
     """Finds joints and actuators in a compiled model."""
@@ -138,9 +139,9 @@ class Autopilot:
     """
     self._air, self._belief = air, belief
     level = np.broadcast_to(np.eye(3), (len(self._yaws_rad), 3, 3))
-    wind_mps = self._blow(physics.time(), level)
+    self._blow(physics.time(), level)
     self._memory[:] = 0.0
-    self._memory[:, 0] = -wind_mps * rotors.DRAG_NS_M / crazyflie.MASS_KG
+    self._memory[:, 0] = -self._air_mps * rotors.DRAG_NS_M / crazyflie.MASS_KG
     force = cascade.force(self._memory[:, 0])
     self._qpos[self._attitudes] = attitudes.thrusting(force, self._yaws_rad)
     thrust_n = crazyflie.MASS_KG * np.linalg.norm(force, axis=1)
@@ -171,6 +172,11 @@ class Autopilot:
       self._qvel[self._rates],
       self._act[self._acts],
     )
+
+  @property
+  def air_mps(self) -> np.ndarray:
+    """(N, 3) world velocities of the air where vehicles are."""
+    return self._air_mps
 
   @property
   def thrusts_n(self) -> np.ndarray:
@@ -212,10 +218,9 @@ class Autopilot:
       cascade.force(asked), wanted, attitude, rotation, tilt_rad
     )
 
-  def _blow(self, time_s: float, rotation: np.ndarray) -> np.ndarray:
-    """Lets the air move past vehicles; returns its world velocities (N, 3)."""
-    wind_mps = self._air.velocity_mps(time_s, self._qpos[self._places])
-    if wind_mps is None:
-      return np.zeros((len(rotation), 3))
-    self._ctrl[self._drags] = (wind_mps[:, None] @ rotation)[:, 0]
-    return wind_mps
+  def _blow(self, time_s: float, rotation: np.ndarray) -> None:
+    """Lets the air move past vehicles, which are turned by (N, 3, 3)."""
+    air_mps = self._air.velocity_mps(time_s, self._qpos[self._places])
+    if air_mps is not None:
+      self._air_mps = air_mps
+      self._ctrl[self._drags] = (air_mps[:, None] @ rotation)[:, 0]

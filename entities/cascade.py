@@ -21,11 +21,9 @@ import math
 import numpy as np
 
 from waggle_tasks.entities import attitudes, crazyflie, mixer, rotors
+from waggle_tasks.protocol import limits
 
 GRAVITY_MPS2 = 9.81
-# The stock firmware's, as is the speed.
-TILT_RAD = math.radians(20.0)
-_SPEED_MPS = 1.0
 # Of each axis: the integral, position, attitude and the rotors with their lead.
 _POLES = (-1.2, -4 + 2j, -4 - 2j, -14 + 9j, -14 - 9j, -22.0)
 _YAW = (-4.0, -6.0)
@@ -36,8 +34,8 @@ _INTEGRAL_MPS2, _NEAR_M = 3.0, 0.03
 # Of all rotors together, so that each has some left for torques.
 _SHARE = 0.9
 _TOTAL_N = (
-  4 * (rotors.THRUST_N[0] / _SHARE + 0.004),
-  4 * _SHARE * rotors.THRUST_N[1],
+  4 * (limits.THRUST_N[0] / _SHARE + 0.004),
+  4 * _SHARE * limits.THRUST_N[1],
 )
 _UP = np.array([0.0, 0.0, 1.0])
 
@@ -127,7 +125,7 @@ def accelerate(
     World m/s^2; drag at the wanted velocity is made up for, as by Faessler and
     others, doi:10.1109/LRA.2017.2776353.
   """
-  most_m = _VELOCITY_S / _POSITION_S2 * _SPEED_MPS
+  most_m = _VELOCITY_S / _POSITION_S2 * limits.MAX_SPEED_MPS
   error_m = _within(wanted.position_m - position_m, most_m)
   integral_mps2 += _INTEGRAL_S3 * period_s * _within(error_m, _NEAR_M)
   integral_mps2[:] = _within(integral_mps2, _INTEGRAL_MPS2)
@@ -147,14 +145,14 @@ def force(acceleration_mps2: np.ndarray) -> np.ndarray:
     acceleration_mps2: (N, 3) world m/s^2.
 
   Returns:
-    (N, 3) world m/s^2, gravity made up for; tilted by `TILT_RAD` at most.
+    (N, 3) world m/s^2, gravity made up for; tilted by 20 degrees at most.
   """
   out = acceleration_mps2 + GRAVITY_MPS2 * _UP
   low, high = (each / crazyflie.MASS_KG for each in _TOTAL_N)
-  up = np.minimum(np.maximum(out[:, 2], low), high * math.cos(TILT_RAD))
+  up = np.minimum(np.maximum(out[:, 2], low), high * math.cos(limits.TILT_RAD))
   out[:, 2] = up
   aside = np.hypot(out[:, 0], out[:, 1])
-  most = math.tan(TILT_RAD) * up
+  most = math.tan(limits.TILT_RAD) * up
   out[:, :2] *= (most / np.maximum(aside, most))[:, None]
   return out
 

@@ -3,6 +3,7 @@
 import numpy as np
 
 from waggle_tasks.entities import rotors
+from waggle_tasks.protocol import limits
 
 _SHARE = np.linalg.inv(rotors.EFFECT)  # Of thrust and torques, for each rotor.
 
@@ -13,7 +14,7 @@ def mix(demand: np.ndarray) -> np.ndarray:
   What does not fit is given up in this order: yaw, thrust, roll and pitch.
   """
   out = demand @ _SHARE.T
-  low, high = rotors.THRUST_N
+  low, high = limits.THRUST_N
   if low <= out.min() and out.max() <= high:  # The usual case.
     return out
   level, turning, yawing = (
@@ -42,5 +43,5 @@ def lead(
     rate_s: How fast they are to come nearer, in 1/s.
   """
   out = thrust_n + rotors.LAG_S * rate_s * (wanted_n - thrust_n)
-  low, high = rotors.THRUST_N
+  low, high = limits.THRUST_N
   return np.minimum(np.maximum(out, low), high)

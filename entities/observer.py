@@ -119,7 +119,7 @@ class ObserverObservables(crazyflie.CrazyflieObservables):
     return eye.EyeCamera(entity.eye, entity.incremental, entity.spoil)
 
   @composer.observable
-  def position_m(self) -> observable.Generic:  # type: ignore[override]
+  def position_m(self) -> observable.Generic:
     """Where it takes itself to be: (3,) float64, metres."""
     return observable.Generic(self._entity.estimate_m)
 

@@ -15,9 +15,8 @@ from dm_control import mjcf
 import numpy as np
 
 from waggle_tasks.entities import airframe, crazyflie
+from waggle_tasks.protocol import limits
 
-# Of one rotor, as identified on Crazyflies.
-THRUST_N = (0.0128, 0.12)
 # J. Foerster, System identification of the Crazyflie 2.0 nano quadrocopter,
 # ETH Zurich 2015: thrust follows its command as 1 / (1 - 0.9695404 / z) at
 # 500 Hz, and torque is so many metres times thrust.
@@ -71,7 +70,7 @@ def mount(vehicle: crazyflie.Crazyflie) -> Rotors:
         dynprm=[LAG_S],
         gainprm=[1.0],
         ctrllimited=True,
-        ctrlrange=THRUST_N,
+        ctrlrange=limits.THRUST_N,
       )
     )
   drags = [

@@ -66,13 +66,13 @@ class Scenario:
     units: The agreed fields of the payload.
     appearance: How the room looks.
     surroundings: What else moves in it.
-    dynamics: How vehicles fly, one of `limits.DYNAMICS`: 'ideal' forces of the
-      paper, which never tilt a vehicle, or four 'rotors' with their lag, under
-      a cascade of laws and with drag.
+    dynamics: How vehicles fly, one of `limits_lib.DYNAMICS`: by the ideal forces
+      of the paper, which never tilt a vehicle, or by four rotors with lag and
+      drag, under a cascade of laws.
     air: What the air does; only rotors feel it.
     estimator: How vehicles with rotors know where they are, one of
-      `estimators.ESTIMATORS`: 'none' is the truth, with others they wander as
-      real ones do, and `position_m` is what they take for the truth.
+      `estimators.ESTIMATORS`: with none of them they know the truth, with
+      another they wander by its errors.
     drift: How far vehicles wander from where they should be.
     sensor: What spoils the observers' images.
     rate_hz: How many images and references there are in a second: 250 over a
@@ -257,8 +257,8 @@ class Scenario:
     for field, is_asked in asked.items():
       if is_asked and self.dynamics != 'rotors':
         raise ScenarioError(
-          f'`{field}` must not be given with `dynamics` {self.dynamics!r}, which'
-          " feel no air and know where they are: choose 'rotors'"
+          f'`{field}` must not be given with `dynamics` {self.dynamics!r}: no'
+          " air is felt and the truth is known there; choose 'rotors'"
         )
 
   def _check_exposure(self, frame_s: float) -> None:

@@ -63,6 +63,8 @@ def _outcome(outcome: verdicts.Outcome) -> markup.Markup:
     ('start, s', 'start_s', 2, 1), ('arrival, s', 'arrival_s', 2, 1),
     ('error, mm', 'error_m', 2, 1e3), ('hold, s', 'hold_s', 2, 1),
   )  # fmt: skip
+  if outcome.estimate_error_m is not None:
+    columns += (('by estimate, mm', 'estimate_error_m', 2, 1e3),)
   cells = []
   for _, field, digits, scale in columns:
     value = getattr(outcome, field)

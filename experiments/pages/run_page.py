@@ -16,6 +16,7 @@ from waggle_tasks.experiments.pages import (
   markup,
   observer_part,
   room,
+  rotor_part,
   timelines,
 )
 from waggle_tasks.experiments.record import (
@@ -31,7 +32,7 @@ from waggle_tasks.protocol import payload
 _VIDEOS = {'.webm': 'video/webm', '.mp4': 'video/mp4'}
 _DATA = (
   'config.json', 'events.jsonl', 'result.json', 'provenance.json',
-  archive.TRACES, archive.POSITIONS,
+  archive.TRACES, archive.POSITIONS, archive.FLIGHTS,
 )  # fmt: skip
 
 # Of a scenario, what its one line says anyhow.
@@ -92,6 +93,7 @@ def draw(run: archive.Run, films: Sequence[str]) -> markup.Markup:
     _failures(outcomes),
     _film(run, films),
     _flights(run),
+    rotor_part.draw(run),
     *(observer_part.draw(run, outcome) for outcome in outcomes),
     _provenance(run),
   ]

@@ -53,6 +53,9 @@ LIMITS: Mapping[str, Limits] = {
   ),
 }
 DYNAMICS = tuple(LIMITS)
+# Of one rotor, as identified on Crazyflies, and of what is asked of all.
+THRUST_N = (0.0128, 0.12)
+TILT_RAD = math.radians(20.0)
 # How far apart two paths may end and begin, and how fast.
 _JUMP_M, _REST_MPS = 0.005, 0.025
 # Peaks are sought this finely, and in no fewer moments.

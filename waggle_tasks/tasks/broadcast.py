@@ -14,7 +14,6 @@ from waggle_tasks.tasks import (
   actions,
   contacts,
   copies,
-  estimators,
   fleet,
   flights,
   safety,
@@ -71,6 +70,11 @@ class Broadcast(copies.Uncopied, composer.Task):
   def root_entity(self) -> flight_room.FlightRoom:
     """The arena."""
     return self._parts.room
+
+  @property
+  def fleet(self) -> fleet.Fleet:
+    """The vehicles."""
+    return self._fleet
 
   @property
   def performer(self) -> performer.Performer:
@@ -145,7 +149,7 @@ class Broadcast(copies.Uncopied, composer.Task):
       {name: drift.performer(random_state) for name in self._dancers}
       | {name: drift.observer(random_state) for name in self._observers}
     )
-    self._take_off(physics, random_state)
+    self._fleet.begin(physics, self._parts, random_state)
     self._clock = clock_lib.Clock(physics, self.agreement)
     self._tell()
     for each in self._dancers.values():
@@ -153,23 +157,9 @@ class Broadcast(copies.Uncopied, composer.Task):
       each.vehicle.stop(each.performance.stop_s)
     self._begin_flights()
 
-  def _take_off(
-    self, physics: mjcf.Physics, random_state: np.random.RandomState
-  ) -> None:
-    """Lets the vehicles fly, in the air and by the estimates of an episode."""
-    parts = self._parts
-    air = parts.air.weather(
-      self.agreement.hover_height_m, parts.duration_s, random_state
-    )
-    count = len(self._dancers) + len(self._observers)
-    belief = estimators.draw(
-      parts.estimator, count, parts.duration_s, random_state
-    )
-    self._fleet.begin(physics, air, belief)
-
   def _tell(self) -> None:
     """Lets observers know what they take for their places."""
-    errors_m = self.errors_m()
+    errors_m = self._fleet.errors_m(self._clock.time_s)
     for name, each in self._observers.items():
       each.error_m = errors_m[name]
 
@@ -217,7 +207,7 @@ class Broadcast(copies.Uncopied, composer.Task):
       self._fleet.command(physics, name, middle_s, motion)
     wanted = actions.read(action, [*self._observers])
     followed = self._flights.follow(
-      wanted, self.positions_m(physics), self.drifts_m(), time_s
+      wanted, self.positions_m(physics), self._fleet.offsets_m(time_s), time_s
     )
     for name, each in followed.items():
       motion = each.position_m, each.velocity_mps, each.acceleration_mps2
@@ -265,14 +255,12 @@ class Broadcast(copies.Uncopied, composer.Task):
     self._clock.tick(physics)
     self._tell()
     self._contacts = tuple(sorted(self._touched))
-    drifts = self._fleet.drifts(self._clock.time_s)
-    positions_m = self.positions_m(physics)
-    velocities_mps = self.velocities_mps(physics)
-    self._rewards = self._flights.update(
-      {name: positions_m[name] - off[0] for name, off in drifts.items()},
-      {name: velocities_mps[name] - off[1] for name, off in drifts.items()},
-      self.sends_message and self._clock.time_s >= self.performer.end_s,
-    )
+    time_s = self._clock.time_s
+    authorised = self.sends_message and time_s >= self.performer.end_s
+    # Whether it moved is a matter of what it was told, whether it has arrived
+    # one of truth.
+    moved = self._fleet.steady(physics, time_s, told=not authorised)
+    self._rewards = self._flights.update(*moved, authorised)
 
   def positions_m(self, physics: mjcf.Physics) -> dict[str, np.ndarray]:
     """True position of every vehicle, (3,) world metres, by its name."""
@@ -289,10 +277,6 @@ class Broadcast(copies.Uncopied, composer.Task):
     """
     drifts = self._fleet.drifts(self._clock.time_s)
     return {name: place for name, (place, _) in drifts.items()}
-
-  def errors_m(self) -> dict[str, np.ndarray]:
-    """How far from itself each vehicle takes itself to be, (3,), by name."""
-    return self._fleet.errors_m(self._clock.time_s)
 
   @property
   def contacts(self) -> tuple[tuple[str, str], ...]:

@@ -10,6 +10,8 @@ from waggle_tasks.arenas import flight_room, layouts
 from waggle_tasks.entities import autopilot, controller, crazyflie
 from waggle_tasks.protocol import agreement as agreement_lib
 from waggle_tasks.tasks import drift as drift_lib
+from waggle_tasks.tasks import estimators
+from waggle_tasks.tasks import parts as parts_lib
 
 Offsets = dict[str, tuple[np.ndarray, np.ndarray]]
 
@@ -19,6 +21,7 @@ class Fleet:
 
   Attributes:
     homes: Where each hovers in this episode.
+    told_m: Where each was last told to be, (3,), before its drift.
   """
 
   def __init__(
@@ -55,6 +58,7 @@ class Fleet:
           room.mjcf_model, vehicle, yaws_rad[name]
         )
     self.homes: dict[str, layouts.Pose] = {}
+    self.told_m: dict[str, np.ndarray] = {}
 
   def after_compile(self, physics: mjcf.Physics) -> None:
     """Finds joints and actuators in the compiled model."""
@@ -84,6 +88,7 @@ class Fleet:
       [self._poses[name] for name in self._vehicles], jitter_m, random_state
     )
     self.homes = dict(zip(self._vehicles, poses, strict=True))
+    self.told_m = {n: np.array(p.position_m) for n, p in self.homes.items()}
     for name, pose in self.homes.items():
       half_rad = pose.yaw_rad / 2
       self._vehicles[name].set_pose(
@@ -95,19 +100,23 @@ class Fleet:
   def begin(
     self,
     physics: mjcf.Physics,
-    air: autopilot.Air = autopilot.Air(),
-    belief: autopilot.Belief = autopilot.Belief(),
+    parts: parts_lib.Parts,
+    random_state: np.random.RandomState,
   ) -> None:
     """Begins an episode, with every vehicle at its place.
 
     Args:
       physics: The compiled model.
-      air: What the air does.
-      belief: What vehicles know of themselves, in their order.
+      parts: What the task is made of.
+      random_state: Of the episode: air and errors are drawn, if there are any.
     """
-    self._air, self._belief = air, belief
+    seconds, height_m = parts.duration_s, parts.agreement.hover_height_m
+    air = parts.air.weather(height_m, seconds, random_state)
+    self._belief = estimators.draw(
+      parts.estimator, len(self._vehicles), seconds, random_state
+    )
     if self._autopilot:
-      self._autopilot.begin(physics, air, belief)
+      self._autopilot.begin(physics, air, self._belief)
 
   def before_substep(self, physics: mjcf.Physics) -> None:
     """Flies what has to be flown from one physics step to the next."""
@@ -135,6 +144,7 @@ class Fleet:
       motion: Where it should be.
       turn_rad: Its heading, counted from where it began.
     """
+    self.told_m[name] = motion[0]
     drift = self._wanders[name].at(middle_s)
     place_m, velocity_mps, acceleration_mps2 = (
       each + off[:3] for each, off in zip(motion, drift, strict=True)
@@ -153,12 +163,54 @@ class Fleet:
     velocities = physics.data.qvel[self._rates]
     return dict(zip(self._vehicles, velocities, strict=True))
 
+  def flown(self) -> dict[str, tuple[float, np.ndarray, np.ndarray]]:
+    """By name, tilt in rad, thrusts (4,) in N and air (3,) in m/s.
+
+    Only of vehicles with rotors.
+    """
+    pilot = self._autopilot
+    if pilot is None:
+      return {}
+    found = zip(pilot.tilts_rad, pilot.thrusts_n, pilot.air_mps, strict=True)
+    return dict(zip(self._vehicles, found, strict=True))
+
   def errors_m(self, time_s: float) -> dict[str, np.ndarray]:
     """How far from itself each vehicle takes itself to be, (3,), by name."""
     errors = self._belief.errors(time_s)
     nothing = np.zeros((len(self._vehicles), 3))
     places_m = nothing if errors is None else errors[0]
     return dict(zip(self._vehicles, places_m, strict=True))
+
+  def offsets_m(self, time_s: float) -> dict[str, np.ndarray]:
+    """How far from its reference each vehicle is, (3,), by its name.
+
+    By its drift, and by what it does not know.
+    """
+    errors_m = self.errors_m(time_s)
+    drifts = self.drifts(time_s)
+    return {name: off[0] - errors_m[name] for name, off in drifts.items()}
+
+  def steady(
+    self, physics: mjcf.Physics, time_s: float, told: bool
+  ) -> tuple[dict[str, np.ndarray], dict[str, np.ndarray]]:
+    """Places and velocities less the drift, (3,) each, by vehicle.
+
+    Args:
+      physics: The compiled model.
+      time_s: The time.
+      told: Whether places are those that vehicles were told, where they have
+        rotors: what air and errors do to them is nobody's command.
+    """
+    places_m, velocities_mps = (
+      self.positions_m(physics),
+      self.velocities_mps(physics),
+    )
+    for name, (place_m, rate_mps) in self.drifts(time_s).items():
+      places_m[name] = places_m[name] - place_m
+      velocities_mps[name] = velocities_mps[name] - rate_mps
+    if told and self._autopilot:
+      places_m = dict(self.told_m)
+    return places_m, velocities_mps
 
   def drifts(self, time_s: float) -> Offsets:
     """Drift and its velocity at a time, (3,) each, by vehicle."""
