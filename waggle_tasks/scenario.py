@@ -66,9 +66,9 @@ class Scenario:
     units: The agreed fields of the payload.
     appearance: How the room looks.
     surroundings: What else moves in it.
-    dynamics: How vehicles fly, one of `limits_lib.DYNAMICS`: by the ideal forces
-      of the paper, which never tilt a vehicle, or by four rotors with lag and
-      drag, under a cascade of laws.
+    dynamics: How vehicles fly, one of `limits_lib.DYNAMICS`: by ideal forces,
+      as in the paper, which never tilt a vehicle, or by four rotors with lag
+      and drag, under a cascade of laws.
     air: What the air does; only rotors feel it.
     estimator: How vehicles with rotors know where they are, one of
       `estimators.ESTIMATORS`: with none of them they know the truth, with

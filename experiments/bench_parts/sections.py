@@ -9,6 +9,7 @@ from waggle_tasks.experiments.bench_parts import (
   cameras,
   loops,
   memory,
+  pilots,
   processes,
   readers,
   stages,
@@ -127,6 +128,13 @@ def measure_realtime(settings: Settings) -> list[loops.Loop]:
   )
 
 
+def measure_dynamics(settings: Settings) -> pilots.Flying:
+  """The default broadcast by each dynamics, in turns."""
+  return processes.alone(
+    pilots.measure, settings.whole, settings.repeats, settings.clock
+  )
+
+
 def measure_observers(settings: Settings) -> list[loops.Loop]:
   """Broadcasts of different numbers of observers, in turns."""
   scenes = [
@@ -156,6 +164,7 @@ SECTIONS = {
   'stages': measure_stages,
   'receivers': measure_receivers,
   'realtime': measure_realtime,
+  'dynamics': measure_dynamics,
   'observers': measure_observers,
   'memory': measure_memory,
   'workers': measure_workers,

@@ -1,6 +1,6 @@
 """How vehicles with rotors flew: tilt, thrusts, air, estimate against truth."""
 
-from collections.abc import Sequence
+import dataclasses
 import math
 
 import numpy as np
@@ -15,16 +15,30 @@ _LOOKS = 'a', 'b', 'c'
 tag = markup.tag
 
 
+@dataclasses.dataclass(frozen=True, eq=False)
+class _Signal:
+  """A panel: (T, K) values over time, with a name for each column."""
+
+  title: str
+  unit: str
+  values: np.ndarray
+  names: tuple[str, ...] = ('',)
+  limits: plot.Limits | None = None
+
+
 def draw(run: archive.Run) -> markup.Markup | None:
   """A part for each vehicle; None for vehicles without rotors."""
   if not run.flights:
     return None
   parts = []
   for name, each in run.flights.items():
+    *signals, last = _signals(each)
+    panels = [_panel(signal, run, False) for signal in signals]
+    panels.append(_panel(last, run, True))
     parts += [
       tag('h3', name),
       tag('p', _words(each), class_='faint'),
-      tag('div', markup.join(_panels(run, each)), class_='scroll'),
+      tag('div', markup.join(panels), class_='scroll'),
     ]
   return tag('section', tag('h2', 'Rotors'), *parts, id='rotors')
 
@@ -46,46 +60,41 @@ def _words(each: flown.Flown) -> str:
   return f'{words}.'
 
 
-def _panels(run: archive.Run, each: flown.Flown) -> list[markup.Markup]:
-  """The panels of a vehicle, one below the other."""
+def _signals(each: flown.Flown) -> list[_Signal]:
+  """What there is to see of a vehicle."""
   axes = 'x', 'y', 'z'
-  milli = 1e3 * each.thrusts_n
-  shown: list[tuple[str, str, np.ndarray, Sequence[str], plot.Limits | None]]
-  shown = [
-    (
-      'tilt', 'degrees', np.degrees(each.tilt_rad)[:, None], ('',),
-      plot.Limits([math.degrees(limits.TILT_RAD)], 'the most asked for'),
+  most_deg, milli = math.degrees(limits.TILT_RAD), 1e3 * each.thrusts_n
+  out = [
+    _Signal(
+      'tilt',
+      'degrees',
+      np.degrees(each.tilt_rad)[:, None],
+      limits=plot.Limits([most_deg], 'the most that is asked for'),
     ),
-    (
-      'thrust', 'mN', np.stack([milli.min(axis=1), milli.max(axis=1)], 1),
+    _Signal(
+      'thrust',
+      'mN',
+      np.stack([milli.min(axis=1), milli.max(axis=1)], axis=1),
       ('least', 'most'),
-      plot.Limits([1e3 * n for n in limits.THRUST_N], 'what a rotor can'),
+      plot.Limits([1e3 * each for each in limits.THRUST_N], 'what a rotor can'),
     ),
-  ]  # fmt: skip
+  ]
   if each.error_m.any():
-    shown.append(('estimate', 'mm off', 1e3 * each.error_m, axes, None))
+    out.append(_Signal('estimate', 'mm off', 1e3 * each.error_m, axes))
   if each.air_mps.any():
-    shown.append(('air', 'm/s', each.air_mps, axes, None))
-  out = []
-  for number, (title, unit, values, names, rule) in enumerate(shown):
-    lines = [
-      plot.Line(column, look, name)
-      for column, look, name in zip(values.T, _LOOKS, names, strict=False)
-    ]
-    reached = np.append(values.ravel(), rule.values if rule else [])
-    low, high = min(reached.min(), 0.0), max(reached.max(), 1e-3)
-    margin = 0.05 * (high - low)
-    scale = plot.Scale(low - margin, high + margin, _TOP + _HEIGHT, _TOP)
-    out.append(
-      plot.panel(
-        title,
-        unit,
-        run.times_s,
-        lines,
-        scale,
-        run.end_s,
-        rule,
-        last=number == len(shown) - 1,
-      )  # fmt: skip
-    )
+    out.append(_Signal('air', 'm/s', each.air_mps, axes))
   return out
+
+
+def _panel(signal: _Signal, run: archive.Run, last: bool) -> markup.Markup:
+  looks = zip(signal.values.T, _LOOKS, signal.names, strict=False)
+  lines = [plot.Line(*each) for each in looks]
+  ends = signal.limits.values if signal.limits else ()
+  reached = np.append(signal.values.ravel(), ends)
+  low, high = min(reached.min(), 0.0), max(reached.max(), 1e-3)
+  margin = 0.05 * (high - low)
+  scale = plot.Scale(low - margin, high + margin, _TOP + _HEIGHT, _TOP)
+  return plot.panel(
+    signal.title, signal.unit, run.times_s, lines, scale, run.end_s,
+    signal.limits, last,
+  )  # fmt: skip
