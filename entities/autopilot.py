@@ -10,38 +10,13 @@ from collections.abc import Mapping, Sequence
 from dm_control import mjcf
 import numpy as np
 
-from waggle_tasks.entities import attitudes, cascade, crazyflie, rotors
+from waggle_tasks.entities import attitudes, cascade, crazyflie, rotors, unknown
 
 _OUTER_S = 0.02
 # Numbers that are remembered for each vehicle: its integral, and the
 # acceleration of the reference before.
 _MEMORY = 2, 3
 _JERK_MPS3 = 30.0  # Of a reference that jumps there is no telling.
-
-
-class Air:
-  """What the air does; here it rests."""
-
-  def velocity_mps(
-    self, time_s: float, positions_m: np.ndarray
-  ) -> np.ndarray | None:
-    """World velocities (N, 3) of the air at places (N, 3); None at rest."""
-    del time_s, positions_m
-    return None
-
-
-class Belief:
-  """How far what vehicles know of themselves is from the truth; here never."""
-
-  def errors(
-    self, time_s: float
-  ) -> tuple[np.ndarray, np.ndarray, np.ndarray] | None:
-    """Errors (N, 3) each: of place, m, velocity, m/s, and attitude, rad.
-
-    That of attitude is a turn about the body's axes. None without any.
-    """
-    del time_s
-    return None
 
 
 class Seat:
@@ -128,7 +103,10 @@ class Autopilot:
     self._period_s = self._every * step_s
 
   def begin(
-    self, physics: mjcf.Physics, air: Air = Air(), belief: Belief = Belief()
+    self,
+    physics: mjcf.Physics,
+    air: unknown.Air = unknown.Air(),
+    belief: unknown.Belief = unknown.Belief(),
   ) -> None:
     """Begins an episode: as if vehicles had hovered where they are for long.
 

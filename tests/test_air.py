@@ -9,7 +9,7 @@ import pytest
 from waggle_tasks import registry, scenario
 from waggle_tasks.arenas import layouts
 from waggle_tasks.entities import crazyflie, jet, rotors
-from waggle_tasks.tasks import air, coloured
+from waggle_tasks.tasks import air, coloured, weather
 
 Load = Callable[..., registry.composer.Environment]
 HEIGHT_M = 1.3
@@ -60,7 +60,9 @@ def test_a_vehicle_leans_into_a_steady_wind_and_stays(
 def test_gusts_have_the_intensities_and_the_lengths_of_dryden() -> None:
   """MIL-F-8785C at 10 feet; of half an hour."""
   wind_mps = 4.0
-  gusts = air.gusts_mps(wind_mps, HEIGHT_M, 1800.0, np.random.RandomState(1))
+  gusts = weather.gusts_mps(
+    wind_mps, HEIGHT_M, 1800.0, np.random.RandomState(1)
+  )
   ground = 0.177 + 0.000823 * 10
   rms_mps = 0.1 * wind_mps * np.array([ground**-0.4, ground**-0.4, 1.0])
   np.testing.assert_allclose(gusts.std(axis=0), rms_mps, rtol=0.15)
@@ -163,7 +165,7 @@ def test_resting_air_draws_nothing() -> None:
       raise AssertionError(f'{name} was drawn')
 
   for still in (air.Air(), air.Air(1.0), air.Air(downwash=True)):
-    still.weather(HEIGHT_M, 10.0, Refuses())
+    weather.draw(still, HEIGHT_M, 10.0, Refuses())
 
 
 @pytest.mark.parametrize(

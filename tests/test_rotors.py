@@ -18,6 +18,7 @@ from waggle_tasks.entities import (
   crazyflie,
   mixer,
   rotors,
+  unknown,
 )
 from waggle_tasks.protocol import gestures, limits, minimum_jerk
 from waggle_tasks.protocol.symbols import Symbol
@@ -34,7 +35,7 @@ Motion = Callable[[float], tuple[np.ndarray, np.ndarray, np.ndarray]]
 class Rig:
   """One vehicle with rotors in a room."""
 
-  def __init__(self, air: autopilot.Air = autopilot.Air()) -> None:
+  def __init__(self, air: unknown.Air = unknown.Air()) -> None:
     room = flight_room.FlightRoom()
     vehicle = crazyflie.Crazyflie()
     room.add_vehicle(vehicle, layouts.Pose(tuple(PLACE_M), YAW_RAD))
@@ -77,7 +78,7 @@ class Rig:
 def rig() -> Iterator[Callable[..., Rig]]:
   made = []
 
-  def make(air: autopilot.Air = autopilot.Air()) -> Rig:
+  def make(air: unknown.Air = unknown.Air()) -> Rig:
     made.append(Rig(air))
     return made[-1]
 

@@ -12,7 +12,7 @@ import math
 import numpy as np
 
 from waggle_tasks import errors
-from waggle_tasks.entities import autopilot
+from waggle_tasks.entities import unknown
 from waggle_tasks.protocol import checks, minimum_jerk
 from waggle_tasks.tasks import coloured
 
@@ -71,7 +71,7 @@ class Errors:
     return Estimates(place[0], place[1], attitude)
 
 
-class Estimates(autopilot.Belief):
+class Estimates(unknown.Belief):
   """The errors of all vehicles in one episode."""
 
   def __init__(
@@ -116,7 +116,7 @@ def draw(
   vehicles: int,
   duration_s: float,
   random_state: np.random.RandomState,
-) -> autopilot.Belief:
+) -> unknown.Belief:
   """What vehicles take themselves to be in an episode; 'none' draws nothing.
 
   Args:
@@ -130,5 +130,5 @@ def draw(
   """
   checks.choice('estimator', name, ESTIMATORS, EstimatorError)
   if name == 'none':
-    return autopilot.Belief()
+    return unknown.Belief()
   return PRESETS[name].draw(vehicles, duration_s, random_state)

@@ -10,7 +10,7 @@ from waggle_tasks.arenas import flight_room, layouts
 from waggle_tasks.entities import autopilot, controller, crazyflie
 from waggle_tasks.protocol import agreement as agreement_lib
 from waggle_tasks.tasks import drift as drift_lib
-from waggle_tasks.tasks import estimators
+from waggle_tasks.tasks import estimators, weather
 from waggle_tasks.tasks import parts as parts_lib
 
 Offsets = dict[str, tuple[np.ndarray, np.ndarray]]
@@ -111,7 +111,7 @@ class Fleet:
       random_state: Of the episode: air and errors are drawn, if there are any.
     """
     seconds, height_m = parts.duration_s, parts.agreement.hover_height_m
-    air = parts.air.weather(height_m, seconds, random_state)
+    air = weather.draw(parts.air, height_m, seconds, random_state)
     self._belief = estimators.draw(
       parts.estimator, len(self._vehicles), seconds, random_state
     )
