@@ -1,11 +1,13 @@
 """Flies all vehicles that have rotors, between one physics step and the next.
 
 The inner law of `cascade` runs before every physics step, 250 times a second,
-the outer one 50 times. What the laws remember is in MuJoCo's own `userdata`, so
-that whoever sets the physics to an earlier state sees the same flight again.
+the outer one about 50 times. What the laws remember is in MuJoCo's own
+`userdata`, so that whoever sets the physics to an earlier state sees the same
+flight again.
 """
 
 from collections.abc import Mapping, Sequence
+import math
 
 from dm_control import mjcf
 import numpy as np
@@ -98,9 +100,9 @@ class Autopilot:
     self._qpos, self._qvel, self._xmat = data.qpos, data.qvel, data.xmat
     self._act, self._ctrl = data.act, data.ctrl
     self._memory = data.userdata.reshape(-1, *_MEMORY)
-    step_s = physics.timestep()
-    self._every = max(1, round(_OUTER_S / step_s))
-    self._period_s = self._every * step_s
+    times = max(1, round(self._frame_s / _OUTER_S))  # In a control step.
+    self._period_s = self._frame_s / times
+    self._every = math.ceil(self._period_s / physics.timestep() - 1e-6)
 
   def begin(
     self,
