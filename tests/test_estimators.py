@@ -37,7 +37,9 @@ class Watch:
     for _ in range(round(seconds / STEP_S)):
       timestep = environment.step(hold)
       places_m.append([*task.positions_m(environment.physics).values()])
-      speeds_mps.append([*task.velocities_mps(environment.physics).values()])
+      speeds_mps.append(
+        [*task.fleet.velocities_mps(environment.physics).values()]
+      )
       yaws_rad.append(
         [
           2 * math.atan2(quaternion[3], quaternion[0])

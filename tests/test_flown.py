@@ -24,7 +24,7 @@ SOME = flown.Flown(
 
 
 def test_flights_are_read_as_they_were_written(tmp_path: pathlib.Path) -> None:
-  path = tmp_path / archive.FLIGHTS
+  path = tmp_path / flown.NAME
   assert flown.load(path) == {}  # Of vehicles without rotors there are none.
   flown.save(path, {'performer': SOME, 'observer_1': SOME})
   first = path.read_bytes()
@@ -42,7 +42,7 @@ def test_flights_are_read_as_they_were_written(tmp_path: pathlib.Path) -> None:
 def test_damaged_flights_are_refused_by_name(
   damage: str, tmp_path: pathlib.Path
 ) -> None:
-  path = tmp_path / archive.FLIGHTS
+  path = tmp_path / flown.NAME
   flown.save(path, {'performer': SOME})
   if damage == 'other':
     np.savez(path, **{'performer.tilt_rad': np.zeros(3)})
@@ -63,10 +63,11 @@ def test_a_run_with_rotors_shows_what_they_did(
     '--camera_width_px=64', '--camera_height_px=64', f'--output={folder}',
   )  # fmt: skip
   assert child.returncode == 0, child.stderr
-  run = archive.load(folder)
-  assert [*run.flights] == ['performer', 'observer_1']
-  for each in run.flights.values():
-    assert each.thrusts_n.shape == (len(run.times_s), 4)
+  times_s = archive.load(folder).times_s
+  flights = flown.load(folder / flown.NAME)
+  assert [*flights] == ['performer', 'observer_1']
+  for each in flights.values():
+    assert each.thrusts_n.shape == (len(times_s), 4)
     np.testing.assert_allclose(
       each.thrusts_n.sum(axis=1), 0.027 * 9.81, rtol=0.1
     )
@@ -77,7 +78,7 @@ def test_a_run_with_rotors_shows_what_they_did(
   assert '<h2>Rotors</h2>' in page
   for word in ('tilt', 'thrust', 'estimate', 'air', 'what a rotor can'):
     assert f'>{word}<' in page or word in page
-  assert f'href="{archive.FLIGHTS}"' in page
+  assert f'href="{flown.NAME}"' in page
 
 
 def test_a_broadcast_tells_both_errors_of_an_estimate() -> None:

@@ -27,11 +27,15 @@ class _Signal:
 
 
 def draw(run: archive.Run) -> markup.Markup | None:
-  """A part for each vehicle; None for vehicles without rotors."""
-  if not run.flights:
+  """A part for each vehicle; None for vehicles without rotors.
+
+  Raises:
+    FlownError: if the run's file of flights is damaged.
+  """
+  flights, parts = flown.load(run.folder / flown.NAME), []
+  if not flights:
     return None
-  parts = []
-  for name, each in run.flights.items():
+  for name, each in flights.items():
     *signals, last = _signals(each)
     panels = [_panel(signal, run, False) for signal in signals]
     panels.append(_panel(last, run, True))

@@ -22,6 +22,7 @@ from waggle_tasks.experiments.pages import (
 from waggle_tasks.experiments.record import (
   archive,
   changes,
+  flown,
   scenario_fields,
   story,
   verdicts,
@@ -32,7 +33,7 @@ from waggle_tasks.protocol import payload
 _VIDEOS = {'.webm': 'video/webm', '.mp4': 'video/mp4'}
 _DATA = (
   'config.json', 'events.jsonl', 'result.json', 'provenance.json',
-  archive.TRACES, archive.POSITIONS, archive.FLIGHTS,
+  archive.TRACES, archive.POSITIONS, flown.NAME,
 )  # fmt: skip
 
 # Of a scenario, what its one line says anyhow.
@@ -49,7 +50,7 @@ def write(folder: pathlib.Path) -> pathlib.Path:
 
   Raises:
     ArchiveError: if it is no run folder, or damaged.
-    TraceError: the same, of its traces.
+    TraceError: the same, of its traces; FlownError, of flights.
   """
   wrong = AttributeError, KeyError, TypeError, receivers.ReceiverError
   try:

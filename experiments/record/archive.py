@@ -11,18 +11,12 @@ import zipfile
 import numpy as np
 
 from waggle_tasks import errors, plain, scenario
-from waggle_tasks.experiments.record import (
-  encoding,
-  episode,
-  flown,
-  story,
-  verdicts,
-)
+from waggle_tasks.experiments.record import encoding, episode, story, verdicts
 from waggle_tasks.experiments.record import traces as traces_lib
 from waggle_tasks.protocol import agreement as agreement_lib
 from waggle_tasks.protocol import controls, payload
 
-TRACES, POSITIONS, FLIGHTS = 'traces.npz', 'positions.npz', 'flights.npz'
+TRACES, POSITIONS = 'traces.npz', 'positions.npz'
 PAGE = 'index.html'  # Of any folder: made from the data beside it.
 
 _Value = TypeVar('_Value')
@@ -78,7 +72,6 @@ class Run:
     traces: By observer name, as in `episode.Rollout`.
     times_s: (T,) one time for each frame.
     positions_m: By vehicle name, (T, 3) true positions.
-    flights: By vehicle name, as in `episode.Rollout`.
   """
 
   folder: pathlib.Path
@@ -89,7 +82,6 @@ class Run:
   traces: dict[str, traces_lib.Trace]
   times_s: np.ndarray
   positions_m: dict[str, np.ndarray]
-  flights: dict[str, flown.Flown]
 
   @property
   def scenario(self) -> dict:
@@ -122,7 +114,7 @@ def load(folder: pathlib.Path) -> Run:
   Raises:
     ArchiveError: naming the file that is missing or damaged.
     FormatError: if a newer program wrote it.
-    TraceError: as ArchiveError, of the traces; FlownError, of flights.
+    TraceError: as ArchiveError, of the traces.
   """
   config = read_config(folder / 'config.json')
   result = read_result(folder / 'result.json')
@@ -137,7 +129,6 @@ def load(folder: pathlib.Path) -> Run:
     traces_lib.load(folder / TRACES),
     positions_m.pop('times_s'),
     positions_m,
-    flown.load(folder / FLIGHTS),
   )
 
 

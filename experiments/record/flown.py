@@ -10,6 +10,8 @@ import numpy as np
 
 from waggle_tasks import errors
 
+NAME = 'flights.npz'  # In a run folder.
+
 
 class FlownError(errors.WaggleError):
   """A file of flights that cannot be read."""

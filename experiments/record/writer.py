@@ -70,4 +70,4 @@ def write_run(
   traces_lib.save(folder / archive.TRACES, rollout.traces)
   archive.save_positions(folder / archive.POSITIONS, rollout)
   if rollout.flights:
-    flown.save(folder / archive.FLIGHTS, rollout.flights)
+    flown.save(folder / flown.NAME, rollout.flights)

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from dm_control import composer, mjcf
+from dm_control import mjcf
 from dm_control.composer.observation import observable
 from dm_env import specs
 import numpy as np
@@ -17,6 +17,7 @@ from waggle_tasks.tasks import (
   fleet,
   flights,
   safety,
+  steps,
   switches,
 )
 from waggle_tasks.tasks import clock as clock_lib
@@ -25,7 +26,7 @@ from waggle_tasks.tasks import parts as parts_lib
 OBSERVATIONS = ('camera', 'time_s', 'position_m')
 
 
-class Broadcast(copies.Uncopied, composer.Task):
+class Broadcast(copies.Uncopied, steps.Framed):
   """Observers see a dance, each through its own eye, and fly its message.
 
   Observations are a list of dicts, one for each observer: `camera`
@@ -48,7 +49,6 @@ class Broadcast(copies.Uncopied, composer.Task):
       parts: What the task is made of.
     """
     self._parts = parts
-    self._steps = 1  # Composer's own interval between two values.
     self._observers = {o.mjcf_model.model: o for o in parts.observers}
     self._dancers = parts.dancers
     dancing = {name: each.vehicle for name, each in self._dancers.items()}
@@ -95,36 +95,6 @@ class Broadcast(copies.Uncopied, composer.Task):
     ]
     usual = [{name: all_[name] for name in OBSERVATIONS} for all_ in everything]
     return [{**a, **b} for a, b in zip(usual, everything, strict=True)]
-
-  def set_timesteps(
-    self, control_timestep: float, physics_timestep: float
-  ) -> None:
-    """See `composer.Task`; a control step is a frame.
-
-    Raises:
-      ClockError: if it is not, or if the physics step is too long.
-    """
-    clock_lib.check_timesteps(
-      control_timestep, physics_timestep, self.agreement
-    )
-    super().set_timesteps(control_timestep, physics_timestep)
-    # Composer counts physics steps: one value for each frame, unless its user
-    # has asked for others.
-    usual, self._steps = self._steps, self.physics_steps_per_control_step
-    for visible in self.observables:
-      for each in visible.values():
-        if each.update_interval == usual:
-          each.update_interval = self._steps
-
-  @composer.Task.control_timestep.setter
-  def control_timestep(self, new_value: float) -> None:
-    """See `set_timesteps`."""
-    self.set_timesteps(new_value, self.physics_timestep)
-
-  @composer.Task.physics_timestep.setter
-  def physics_timestep(self, new_value: float) -> None:
-    """See `set_timesteps`."""
-    self.set_timesteps(self.control_timestep, new_value)
 
   def after_compile(
     self, physics: mjcf.Physics, random_state: np.random.RandomState
@@ -265,10 +235,6 @@ class Broadcast(copies.Uncopied, composer.Task):
   def positions_m(self, physics: mjcf.Physics) -> dict[str, np.ndarray]:
     """True position of every vehicle, (3,) world metres, by its name."""
     return self._fleet.positions_m(physics)
-
-  def velocities_mps(self, physics: mjcf.Physics) -> dict[str, np.ndarray]:
-    """True velocity of every vehicle, (3,) world m/s, by its name."""
-    return self._fleet.velocities_mps(physics)
 
   def drifts_m(self) -> dict[str, np.ndarray]:
     """How far each vehicle is taken from its reference, (3,), by its name.

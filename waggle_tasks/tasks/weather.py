@@ -8,8 +8,8 @@ from waggle_tasks.entities import jet, unknown
 from waggle_tasks.tasks import air as air_lib
 from waggle_tasks.tasks import coloured
 
-# MIL-F-8785C, section 3.7.3.4, and MIL-HDBK-1797, low altitude: heights and
-# lengths in feet, from 10 feet up; lower down they are taken as there.
+# MIL-F-8785C, section 3.7.3, low altitude: heights and lengths in feet, from 10
+# feet up; lower down they are taken as there.
 _FOOT_M = 0.3048
 _LOWEST_FEET = 10.0
 
