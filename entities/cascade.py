@@ -23,7 +23,6 @@ import numpy as np
 from waggle_tasks.entities import attitudes, crazyflie, mixer, rotors
 from waggle_tasks.protocol import limits
 
-GRAVITY_MPS2 = 9.81
 # Of each axis: the integral, position, attitude and the rotors with their lead.
 _POLES = (-1.2, -4 + 2j, -4 - 2j, -14 + 9j, -14 - 9j, -22.0)
 _YAW = (-4.0, -6.0)
@@ -31,11 +30,11 @@ _YAW_ERROR_RAD = 0.3  # More is turned step by step: yaw has little torque.
 # What the integral makes up for: wind, and thrust that is not as commanded.
 # Errors beyond so much are those of a reference that jumped.
 _INTEGRAL_MPS2, _NEAR_M = 3.0, 0.03
-# Of all rotors together, so that each has some left for torques.
-_SHARE = 0.9
+# Of all rotors together; each has so much left for torques.
+_LEFT_N = 0.01
 _TOTAL_N = (
-  4 * (limits.THRUST_N[0] / _SHARE + 0.004),
-  4 * _SHARE * limits.THRUST_N[1],
+  4 * (limits.THRUST_N[0] + _LEFT_N),
+  4 * (limits.THRUST_N[1] - _LEFT_N),
 )
 _UP = np.array([0.0, 0.0, 1.0])
 
@@ -147,7 +146,7 @@ def force(acceleration_mps2: np.ndarray) -> np.ndarray:
   Returns:
     (N, 3) world m/s^2, gravity made up for; tilted by 20 degrees at most.
   """
-  out = acceleration_mps2 + GRAVITY_MPS2 * _UP
+  out = acceleration_mps2 + limits.GRAVITY_MPS2 * _UP
   low, high = (each / crazyflie.MASS_KG for each in _TOTAL_N)
   up = np.minimum(np.maximum(out[:, 2], low), high * math.cos(limits.TILT_RAD))
   out[:, 2] = up

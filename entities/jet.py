@@ -12,13 +12,13 @@ import math
 import numpy as np
 
 from waggle_tasks.entities import crazyflie
+from waggle_tasks.protocol import limits
 
 AIR_KG_M3 = 1.225
-GRAVITY_MPS2 = 9.81
 SIZE_M = 2 * crazyflie.ARM_M
 # What propellers suck in at hover, by momentum theory.
 INDUCED_MPS = math.sqrt(
-  crazyflie.MASS_KG * GRAVITY_MPS2
+  crazyflie.MASS_KG * limits.GRAVITY_MPS2
   / (2 * AIR_KG_M3 * 4 * math.pi * crazyflie.ROTOR_RADIUS_M**2)
 )  # fmt: skip
 # Speed on the axis, in those of the propellers, times distance in sizes; where

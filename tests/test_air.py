@@ -9,6 +9,7 @@ import pytest
 from waggle_tasks import registry, scenario
 from waggle_tasks.arenas import layouts
 from waggle_tasks.entities import crazyflie, jet, rotors
+from waggle_tasks.protocol import limits
 from waggle_tasks.tasks import air, coloured, weather
 
 Load = Callable[..., registry.composer.Environment]
@@ -100,7 +101,7 @@ def test_a_jet_carries_the_weight_of_the_vehicle_above_it(
   flow = 2 * math.pi * aside_m * jet.AIR_KG_M3 * speed_mps**2
   step_m = aside_m[1]
   momentum_n = ((flow[1:] + flow[:-1]) / 2 * step_m).sum()
-  weight_n = crazyflie.MASS_KG * jet.GRAVITY_MPS2
+  weight_n = crazyflie.MASS_KG * limits.GRAVITY_MPS2
   assert momentum_n == pytest.approx(weight_n, rel=0.03)
 
 

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from waggle_tasks import registry, scenario
+from waggle_tasks.arenas import layouts
 from waggle_tasks.protocol import reference
 from waggle_tasks.tasks import coloured, estimators
 
@@ -134,6 +135,13 @@ def test_an_error_and_its_speed_belong_together() -> None:
   steps = np.diff(place, axis=0) / coloured.STEP_S
   middle = (speed[1:] + speed[:-1]) / 2
   assert rms(steps - middle) < 0.25 * rms(middle)
+
+
+def test_vehicles_that_err_start_further_apart() -> None:
+  near = {'dynamics': 'rotors', 'observers': 2, 'distance_m': 0.6}
+  scenario.Scenario(half_span_deg=10.0, **near)
+  with pytest.raises(layouts.LayoutError, match=r'at least 0.23\d m apart'):
+    scenario.Scenario(half_span_deg=10.0, estimator='mocap', **near)
 
 
 def test_an_estimator_that_nobody_knows_is_refused() -> None:

@@ -242,8 +242,9 @@ class Scenario:
       poses[name] = pose = pose.settled(self.hover_height_m)
       bounds.check_inside(name, pose)
     # Two neighbours can come closer by the jitter of both, along x and y, and
-    # by the drift of both.
-    nearer_m = 2 * math.hypot(self.jitter_m, self.jitter_m) + self.drift.near_m
+    # by the drift and the errors of both.
+    nearer_m = 2 * math.hypot(self.jitter_m, self.jitter_m)
+    nearer_m += self.drift.near_m + estimators.near_m(self.estimator)
     layouts.check_spacing(poses, safety.MINIMUM_SPACING_M + nearer_m)
     return poses
 

@@ -16,13 +16,14 @@ from waggle_tasks import errors
 from waggle_tasks.protocol import gestures
 from waggle_tasks.protocol import schedule as schedule_lib
 
+GRAVITY_MPS2 = 9.81
 # Along each world axis. Speed and tilt of the stock firmware: 20 degrees of
 # tilt give 3.57 m/s^2 sideways. Upwards is what 0.35 N of thrust leave a
 # vehicle of 27 g; downwards it can fall.
 MAX_SPEED_MPS = 1.0
 MAX_SIDEWAYS_MPS2 = 3.57
 MAX_UP_MPS2 = 3.15
-MAX_DOWN_MPS2 = 9.81
+MAX_DOWN_MPS2 = GRAVITY_MPS2
 
 
 @dataclasses.dataclass(frozen=True)
