@@ -52,6 +52,12 @@ _YAW_RATE_S, _YAW_S2 = np.poly(_YAW)[1:].real
 _INERTIA = np.array(crazyflie.INERTIA_KG_M2)
 _STIFFNESS = 2 * _INERTIA * (_ATTITUDE_S2, _ATTITUDE_S2, _YAW_S2)  # (3,)
 _DAMPING = _INERTIA * (_RATE_S, _RATE_S, _YAW_RATE_S)  # (3,)
+# To go sideways a body must turn first, and so it follows an acceleration as a
+# second-order lag: on its way it is behind by so many s^2 of it. It is not
+# pulled there, or it would be too far when the acceleration ends. Upwards, only
+# its rotors lag, and the outer law by half of its period.
+_BEHIND_S2 = np.array([1 / _ATTITUDE_S2, 1 / _ATTITUDE_S2, 0.0])
+_AHEAD_S = np.array([0.0, 0.0, 1 / _LEAD_S + 0.012])
 _DRAG_S = rotors.DRAG_NS_M / crazyflie.MASS_KG
 
 
@@ -125,13 +131,16 @@ def accelerate(
     others, doi:10.1109/LRA.2017.2776353.
   """
   most_m = _VELOCITY_S / _POSITION_S2 * limits.MAX_SPEED_MPS
-  error_m = _within(wanted.position_m - position_m, most_m)
+  place_m = wanted.position_m - _BEHIND_S2 * wanted.acceleration_mps2
+  rate_mps = wanted.velocity_mps - _BEHIND_S2 * wanted.jerk_mps3
+  error_m = _within(place_m - position_m, most_m)
   integral_mps2 += _INTEGRAL_S3 * period_s * _within(error_m, _NEAR_M)
   integral_mps2[:] = _within(integral_mps2, _INTEGRAL_MPS2)
   return (
     wanted.acceleration_mps2
+    + _AHEAD_S * wanted.jerk_mps3
     + _DRAG_S * wanted.velocity_mps
-    + _VELOCITY_S * (wanted.velocity_mps - velocity_mps)
+    + _VELOCITY_S * (rate_mps - velocity_mps)
     + _POSITION_S2 * error_m
     + integral_mps2
   )
