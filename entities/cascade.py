@@ -28,8 +28,9 @@ _POLES = (-1.2, -4 + 2j, -4 - 2j, -14 + 9j, -14 - 9j, -22.0)
 _YAW = (-4.0, -6.0)
 _YAW_ERROR_RAD = 0.3  # More is turned step by step: yaw has little torque.
 # What the integral makes up for: wind, and thrust that is not as commanded.
-# Errors beyond so much are those of a reference that jumped.
-_INTEGRAL_MPS2, _NEAR_M = 3.0, 0.03
+# Errors beyond the one limit are those of a reference that jumped; within the
+# other they are left, so that who hovers comes to rest.
+_INTEGRAL_MPS2, _NEAR_M, _EXACT_M = 3.0, 0.03, 0.0005
 # Of all rotors together; each has so much left for torques.
 _LEFT_N = 0.01
 _TOTAL_N = (
@@ -54,9 +55,11 @@ _STIFFNESS = 2 * _INERTIA * (_ATTITUDE_S2, _ATTITUDE_S2, _YAW_S2)  # (3,)
 _DAMPING = _INERTIA * (_RATE_S, _RATE_S, _YAW_RATE_S)  # (3,)
 # To go sideways a body must turn first, and so it follows an acceleration as a
 # second-order lag: on its way it is behind by so many s^2 of it. It is not
-# pulled there, or it would be too far when the acceleration ends. Upwards, only
-# its rotors lag, and the outer law by half of its period.
+# pulled there, or it would be too far when the acceleration ends. With what the
+# laws delay it is flown further behind, which is nothing to be made up for.
+# Upwards only its rotors lag, and the outer law by half of its period.
 _BEHIND_S2 = np.array([1 / _ATTITUDE_S2, 1 / _ATTITUDE_S2, 0.0])
+_FLOWN_S2 = np.array([0.0065, 0.0065, 0.0])
 _AHEAD_S = np.array([0.0, 0.0, 1 / _LEAD_S + 0.012])
 _DRAG_S = rotors.DRAG_NS_M / crazyflie.MASS_KG
 
@@ -131,16 +134,19 @@ def accelerate(
     others, doi:10.1109/LRA.2017.2776353.
   """
   most_m = _VELOCITY_S / _POSITION_S2 * limits.MAX_SPEED_MPS
-  place_m = wanted.position_m - _BEHIND_S2 * wanted.acceleration_mps2
-  rate_mps = wanted.velocity_mps - _BEHIND_S2 * wanted.jerk_mps3
-  error_m = _within(place_m - position_m, most_m)
-  integral_mps2 += _INTEGRAL_S3 * period_s * _within(error_m, _NEAR_M)
+  acceleration = wanted.acceleration_mps2
+  off_m = wanted.position_m - position_m
+  error_m = _within(off_m - _BEHIND_S2 * acceleration, most_m)
+  slow_m = _within(off_m - _FLOWN_S2 * acceleration, _NEAR_M)
+  slow_m -= _within(slow_m, _EXACT_M)
+  rate_mps = wanted.velocity_mps - _BEHIND_S2 * wanted.jerk_mps3 - velocity_mps
+  integral_mps2 += _INTEGRAL_S3 * period_s * slow_m
   integral_mps2[:] = _within(integral_mps2, _INTEGRAL_MPS2)
   return (
-    wanted.acceleration_mps2
+    acceleration
     + _AHEAD_S * wanted.jerk_mps3
     + _DRAG_S * wanted.velocity_mps
-    + _VELOCITY_S * (rate_mps - velocity_mps)
+    + _VELOCITY_S * rate_mps
     + _POSITION_S2 * error_m
     + integral_mps2
   )
