@@ -12,13 +12,20 @@ def thrusting(force: np.ndarray, yaw_rad: np.ndarray) -> np.ndarray:
 
   Args:
     force: World axes, above the horizon; any unit.
-    yaw_rad: (N,) headings.
+    yaw_rad: (N,) headings; of those of one attitude, from `heading`, come
+      quaternions of its own sign.
   """
-  axis = force / np.sqrt((force**2).sum(axis=1))[:, None]
-  cosine = np.sqrt((1 + axis[:, 2]) / 2)  # Of half the tilt.
-  x, y = -axis[:, 1] / (2 * cosine), axis[:, 0] / (2 * cosine)
-  c, s = np.cos(yaw_rad / 2), np.sin(yaw_rad / 2)
-  return np.stack([cosine * c, x * c + y * s, y * c - x * s, cosine * s], 1)
+  x, y, z = force.T
+  length = np.sqrt(x * x + y * y + z * z)
+  cosine = np.sqrt((1 + z / length) / 2)  # Of half the tilt.
+  aside = 2 * cosine * length
+  x, y = -y / aside, x / aside
+  half_rad = yaw_rad / 2
+  c, s = np.cos(half_rad), np.sin(half_rad)
+  out = np.empty((len(force), 4))
+  out[:, 0], out[:, 3] = cosine * c, cosine * s
+  out[:, 1], out[:, 2] = x * c + y * s, y * c - x * s
+  return out
 
 
 def heading(quaternion: np.ndarray) -> np.ndarray:

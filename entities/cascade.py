@@ -24,7 +24,7 @@ from waggle_tasks.entities import attitudes, crazyflie, mixer, rotors
 from waggle_tasks.protocol import limits
 
 # Of each axis: the integral, position, attitude and the rotors with their lead.
-_POLES = (-1.2, -4 + 2j, -4 - 2j, -14 + 9j, -14 - 9j, -22.0)
+_POLES = (-1.2, -6 + 2j, -6 - 2j, -16 + 10j, -16 - 10j, -26.0)
 _YAW = (-4.0, -6.0)
 _YAW_ERROR_RAD = 0.3  # More is turned step by step: yaw has little torque.
 # What the integral makes up for: wind, and thrust that is not as commanded.
@@ -53,13 +53,15 @@ _YAW_RATE_S, _YAW_S2 = np.poly(_YAW)[1:].real
 _INERTIA = np.array(crazyflie.INERTIA_KG_M2)
 _STIFFNESS = 2 * _INERTIA * (_ATTITUDE_S2, _ATTITUDE_S2, _YAW_S2)  # (3,)
 _DAMPING = _INERTIA * (_RATE_S, _RATE_S, _YAW_RATE_S)  # (3,)
+_GAINS = np.zeros((4, 7))  # But for those of the attitude.
+_GAINS[1:, 4:] = np.diag(_DAMPING)
 # To go sideways a body must turn first, and so it follows an acceleration as a
 # second-order lag: on its way it is behind by so many s^2 of it. It is not
 # pulled there, or it would be too far when the acceleration ends. With what the
 # laws delay it is flown further behind, which is nothing to be made up for.
 # Upwards only its rotors lag, and the outer law by half of its period.
 _BEHIND_S2 = np.array([1 / _ATTITUDE_S2, 1 / _ATTITUDE_S2, 0.0])
-_FLOWN_S2 = np.array([0.0065, 0.0065, 0.0])
+_FLOWN_S2 = np.array([0.0042, 0.0042, 0.0])
 _AHEAD_S = np.array([0.0, 0.0, 1 / _LEAD_S + 0.012])
 _DRAG_S = rotors.DRAG_NS_M / crazyflie.MASS_KG
 
@@ -194,15 +196,13 @@ def law(
   turn_rad = np.remainder(wanted.yaw_rad - yaw_rad + math.pi, math.tau)
   turn_rad = _within(turn_rad - math.pi, _YAW_ERROR_RAD)
   goal = attitudes.thrusting(force_mps2, yaw_rad + turn_rad)
-  goal *= np.sign((goal * quaternion).sum(axis=1))[:, None]
   if error_rad is not None:  # There, they take themselves to be at the goal.
     goal = attitudes.turned(goal, -error_rad)
   rate = _body_rate(force_mps2, wanted.jerk_mps3, rotation)
-  count = len(goal)
-  gains = np.zeros((count, 4, 7))
+  gains = np.empty((len(goal), 4, 7))
+  gains[:] = _GAINS
   gains[:, 1:, :4] = _STIFFNESS[:, None] * attitudes.error(goal)
-  gains[:, (1, 2, 3), (4, 5, 6)] = _DAMPING
-  constant = np.empty((count, 4))
+  constant = np.empty((len(goal), 4))
   thrust_n = crazyflie.MASS_KG * (force_mps2 * rotation[:, :, 2]).sum(axis=1)
   constant[:, 0] = np.minimum(np.maximum(thrust_n, _TOTAL_N[0]), _TOTAL_N[1])
   constant[:, 1:] = _DAMPING * rate

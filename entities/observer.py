@@ -1,5 +1,7 @@
 """An observer: a Crazyflie with an eye, which is all that it has."""
 
+from collections.abc import Callable
+
 from dm_control import composer, mjcf
 from dm_control.composer.observation import observable
 import numpy as np
@@ -93,10 +95,6 @@ class Observer(crazyflie.Crazyflie):
     """What comes of the eye's picture now, (H, W, 3) uint8 each."""
     return picture if self._feed is None else self._feed.image(picture)
 
-  def estimate_m(self, physics: mjcf.Physics) -> np.ndarray:
-    """(3,) where it takes itself to be, world metres."""
-    return physics.bind(self.centre).xpos + self.error_m
-
   def image_time_s(self, physics: mjcf.Physics) -> np.ndarray:
     """The time, (), that the image that comes now is told to be of."""
     if self._feed is None:
@@ -109,6 +107,18 @@ def _time_s(physics: mjcf.Physics) -> np.ndarray:
   return np.round(physics.time(), 6)
 
 
+class _Estimate(observable.MJCFFeature):
+  """The place of an observer and its error."""
+
+  def __init__(self, entity: Observer) -> None:
+    super().__init__('xpos', entity.centre)
+    self._entity = entity
+
+  def _callable(self, physics: mjcf.Physics) -> Callable[[], np.ndarray]:
+    take = super()._callable(physics)
+    return lambda: take() + self._entity.error_m
+
+
 class ObserverObservables(crazyflie.CrazyflieObservables):
   """What an observer's agent may see, beside the vehicle's true state."""
 
@@ -119,9 +129,9 @@ class ObserverObservables(crazyflie.CrazyflieObservables):
     return eye.EyeCamera(entity.eye, entity.incremental, entity.spoil)
 
   @composer.observable
-  def position_m(self) -> observable.Generic:
+  def position_m(self) -> observable.MJCFFeature:
     """Where it takes itself to be: (3,) float64, metres."""
-    return observable.Generic(self._entity.estimate_m)
+    return _Estimate(self._entity)
 
   @composer.observable
   def time_s(self) -> observable.Generic:

@@ -102,7 +102,7 @@ _DEGREE = math.radians(1.0)
 # its gyroscope alone, a BMI088, whose noise of 0.014 deg/s/sqrt(Hz) leaves
 # 0.01 deg/s after the second for which it is averaged before the start.
 PRESETS: Mapping[str, Errors] = {
-  'mocap': Errors(0.0078, 0.0075, 0.005, 0.5 * _DEGREE, 1.5 * _DEGREE),
+  'mocap': Errors(0.0090, 0.0080, 0.005, 0.6 * _DEGREE, 1.5 * _DEGREE),
   'lighthouse': Errors(0.0040, 0.012, 0.005, 0.5 * _DEGREE, 0.3 * _DEGREE),
   'flow_deck': Errors(
     0.0045, 0.022, 0.005, 0.5 * _DEGREE, 0.3 * _DEGREE, 0.01 * _DEGREE
