@@ -21,6 +21,7 @@ OTHERS = {
   'heading_step_deg': 30.0, 'flicker_hz': 3.0, 'photons': 100.0,
   'occluder_every_s': 30.0, 'rate_hz': 50.0, 'camera_width_px': 320,
   'camera_height_px': 240, 'heading_bits': 4, 'distance_bits': 3,
+  'dynamics': 'rotors', 'estimator': 'mocap', 'gusts': True, 'downwash': True,
 }  # fmt: skip
 
 
@@ -48,6 +49,10 @@ def test_every_field_that_is_changed_is_said(name: str) -> None:
     extra = {'occluder_every_s': 20.0}
   if name.endswith('_bits'):
     extra = {'payload': '0000010'}
+  if name in ('estimator', 'wind_mps', 'gusts', 'downwash'):
+    extra = {'dynamics': 'rotors'}
+  if name == 'gusts':
+    extra['wind_mps'] = 1.0
   said = changes.of(made(**{**extra, name: other}))
   assert any(each.startswith(f'{name}=') for each in said)
   assert len(said) == 1 + len(extra.keys() - {name})
