@@ -55,6 +55,7 @@ class Crazyflie(composer.Entity):
     self._centre = self._airframe.add(
       'site', name='centre', pos=(0, 0, 0), size=(0.001,), group=3
     )
+    self._spinning = spinning
     airframe.draw(self._airframe, accent_rgba, spinning)
     airframe.enclose(self._airframe)
     self._velocity = self._mjcf_root.sensor.add(
@@ -78,6 +79,11 @@ class Crazyflie(composer.Entity):
   def centre(self) -> mjcf.Element:
     """The site at the centre of mass, in the body frame."""
     return self._centre
+
+  @property
+  def spinning(self) -> bool:
+    """Whether its propellers turn, as those that carry it do."""
+    return self._spinning
 
   @property
   def velocity_sensor(self) -> mjcf.Element:

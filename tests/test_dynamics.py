@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 from waggle_tasks import plain, registry, scenario
-from waggle_tasks.entities import airframe, crazyflie
+from waggle_tasks.entities import airframe, crazyflie, performer
 from waggle_tasks.experiments.record import scenario_fields
 from waggle_tasks.protocol import gestures, limits, reference, timing
-from waggle_tasks.tasks import air
+from waggle_tasks.tasks import air, broadcast, parts
 
 Load = Callable[..., registry.composer.Environment]
 HOME_M = np.array([0.0, 0.0, 1.3])
@@ -215,10 +215,25 @@ def test_dynamics_air_and_estimates_have_flags_and_go_through_files() -> None:
   assert plain.from_plain(scenario.Scenario, table) == scenario.Scenario()
 
 
-def test_a_second_dancer_flies_with_rotors_too(load: Load) -> None:
-  from waggle_tasks.entities import performer
-  from waggle_tasks.tasks import broadcast, parts
+def test_parts_of_other_dynamics_are_refused() -> None:
+  ideal = registry.parts(scenario.Scenario(observers=1))
+  turning = registry.parts(scenario.Scenario(observers=1, **QUICK))
+  for made, changes, error in (
+    (
+      turning,
+      {'performer': ideal.performer},
+      '`dynamics` of performer must be',
+    ),
+    (ideal, {'dynamics': 'rotors'}, '`dynamics` of performer must be'),
+    (ideal, {'air': air.Air(1.0)}, '`air` and `estimator` must not be given'),
+    (ideal, {'estimator': 'mocap'}, '`air` and `estimator` must not be given'),
+    (ideal, {'dynamics': 'jets'}, "`dynamics` must be one of ..ideal'"),
+  ):
+    with pytest.raises(parts.PartsError, match=error):
+      dataclasses.replace(made, **changes)
 
+
+def test_a_second_dancer_flies_with_rotors_too(load: Load) -> None:
   scene = scenario.Scenario(observers=1, duration_s=3.0, **QUICK)
   made = registry.parts(scene)
   other = parts.Dancer(
