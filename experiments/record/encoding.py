@@ -7,7 +7,7 @@ from typing import Any
 from waggle_tasks import errors, plain
 
 # Every object that is written says it; what says none is of format 1.
-FORMAT = 3
+FORMAT = 2
 
 
 class FormatError(errors.WaggleError):

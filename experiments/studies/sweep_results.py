@@ -44,6 +44,7 @@ class Exposure:
   hold_s: float | None = None
   failures: tuple[str, ...] = ()
   diagnosis: str = ''
+  estimate_error_m: float | None = None
   right: bool
   wrong: bool
   unauthorised: bool
