@@ -7,7 +7,7 @@ from dm_control import composer, mjcf
 import numpy as np
 
 from waggle_tasks import appearance, runtime
-from waggle_tasks.arenas import bounds, clutter, layouts, scenery, views
+from waggle_tasks.arenas import bounds, clutter, layouts, scenery, shared_views
 from waggle_tasks.arenas import sun as sun_lib
 from waggle_tasks.protocol import agreement as agreement_lib
 
@@ -49,7 +49,7 @@ class FlightRoom(composer.Arena):
   the floor: with shadows off, pads show where a vehicle is and, once it has
   moved, where it came from.
 
-  `views.SharedViews` tells of its cameras.
+  `shared_views.SharedViews` tells of its cameras.
   """
 
   def _build(
@@ -72,7 +72,9 @@ class FlightRoom(composer.Arena):
     self._set_options()
     self._add_room()
     self._add_lights()
-    self._views = views.SharedViews(self._mjcf_root, agreement.hover_height_m)
+    self._views = shared_views.SharedViews(
+      self._mjcf_root, agreement.hover_height_m
+    )
 
   @property
   def look(self) -> appearance.Appearance:
@@ -152,7 +154,9 @@ class FlightRoom(composer.Arena):
     root.compiler.boundinertia = 0.0
     width_px, height_px = (
       _SAMPLES * max(sides)
-      for sides in zip(views.SIZE_PX, self._agreement.camera.size, strict=True)
+      for sides in zip(
+        shared_views.SIZE_PX, self._agreement.camera.size, strict=True
+      )
     )
     getattr(root.visual, 'global').set_attributes(
       offwidth=width_px, offheight=height_px

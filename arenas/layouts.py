@@ -58,6 +58,11 @@ class Pose:
     return Pose((*self.position_m[:2], height_m), self.yaw_rad)
 
 
+def names(count: int) -> list[str]:
+  """What observers are called, in the order of their poses."""
+  return [f'observer_{number}' for number in range(1, count + 1)]
+
+
 class Layout(Protocol):
   """Whatever places observers around the performer."""
 

@@ -2,11 +2,9 @@
 
 Prints medians over repeats, ratios first: they depend least on the machine.
 Everything is measured on one core with one drawing thread, but for the
-throughput of two processes. `--check` measures nothing: it draws random
-scenes with the incremental camera and in full, and tells how the pictures
-differ. `--check_events` flies cases with either camera and tells whether their
-event logs are equal. Exit status 0, 1 when a check found a difference, 2 on
-bad input.
+throughput of two processes. `--check_events` measures nothing: it flies cases
+with either camera and tells whether their event logs are equal. Exit status 0,
+1 when they are not, 2 on bad input.
 """
 
 from collections.abc import Sequence
@@ -38,11 +36,6 @@ _LONG = flags.DEFINE_boolean(
   'long', False, 'Whether memory is watched over whole broadcasts.'
 )
 _JSON = flags.DEFINE_string('json', None, 'New file for all numbers.')
-_CHECK = flags.DEFINE_boolean(
-  'check', False, 'Compare pictures of random scenes instead.'
-)
-_SCENES = flags.DEFINE_integer('scenes', 24, 'How many scenes to check.')
-_SEED = flags.DEFINE_integer('seed', 0, 'Of the scenes to check.')
 _CHECK_EVENTS = flags.DEFINE_boolean(
   'check_events', False, 'Compare event logs instead.'
 )
@@ -66,16 +59,14 @@ def main(argv: Sequence[str]) -> int:
 
 def _run() -> int:
   """Does it, and leaves all numbers in the file whose name is claimed."""
-  from waggle_tasks.experiments.bench_parts import actions, sections
+  from waggle_tasks.experiments.bench_parts import answers, sections
   from waggle_tasks.experiments.machine import files
   from waggle_tasks.experiments.record import encoding
 
-  here, done = actions.machine(), []
-  if _CHECK.value:
-    done.append(actions.check_pictures(_SCENES.value, _SEED.value))
+  here = answers.machine()
   if _CHECK_EVENTS.value:
-    done.append(actions.check_events(_SUITE.value))
-  if not done:
+    answer = answers.check_events(_SUITE.value)
+  else:
     settings = sections.Settings(
       here['renderer'],
       _REPEATS.value,
@@ -83,12 +74,12 @@ def _run() -> int:
       _LONG.value,
       tuple(_RECEIVER.value or ()),
     )
-    done.append(actions.measure(here, _ONLY.value, settings))
+    answer = answers.measure(here, _ONLY.value, settings)
   if _JSON.value is not None:
-    found = {name: value for each in done for name, value in each.found.items()}
-    files.put(pathlib.Path(_JSON.value), encoding.pretty({**here, **found}))
-  print('\n\n'.join(each.text for each in done))
-  return 0 if all(each.passed for each in done) else 1
+    text = encoding.pretty({**here, **answer.found})
+    files.put(pathlib.Path(_JSON.value), text)
+  print(answer.text)
+  return 0 if answer.passed else 1
 
 
 if __name__ == '__main__':

@@ -19,6 +19,7 @@ import tqdm
 
 from waggle_tasks import errors
 from waggle_tasks.agents import receiver, receivers
+from waggle_tasks.arenas import layouts
 from waggle_tasks.experiments import launch
 from waggle_tasks.experiments.flags import receiver_flag, scenario_flags
 from waggle_tasks.experiments.machine import table
@@ -61,14 +62,14 @@ def main(argv: Sequence[str]) -> int:
   expected[swap[0]], expected[swap[1]] = own[swap[1]], own[swap[0]]
   rows = [
     (
-      f'observer_{k + 1}',
+      name,
       _message(own[k]),
       str(len(own[k])),
       'yes' if own[k] == foreign[k] else 'NO',
       _message(swapped[k]),
       'yes' if swapped[k] == expected[k] else 'NO',
     )
-    for k in range(scene.observers)
+    for k, name in enumerate(layouts.names(scene.observers))
   ]
   header = (
     'observer', 'message', 'events', f'same under {other.payload}',

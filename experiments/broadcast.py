@@ -11,12 +11,11 @@ from collections.abc import Iterator, Sequence
 import contextlib
 import pathlib
 import sys
-from typing import TYPE_CHECKING
 
 from absl import flags
 
 from waggle_tasks import scenario
-from waggle_tasks.agents import observer_agent, receivers
+from waggle_tasks.agents import receivers
 from waggle_tasks.experiments import launch
 from waggle_tasks.experiments.flags import (
   config_flag,
@@ -38,10 +37,6 @@ from waggle_tasks.experiments.record import (
   writer,
 )
 from waggle_tasks.experiments.studies import job_progress
-
-if TYPE_CHECKING:
-  from dm_control import composer
-  import dm_env
 
 scenario_flags.define()
 recording_flags.define()
@@ -73,8 +68,8 @@ def main(argv: Sequence[str]) -> int:
     print(f'provenance.json will not be complete: {error}', file=sys.stderr)
   with _folder() as (draft, folder):
     start = provenance.Start.now(command, foreign)
-    with recording_flags.recorders(draft, scene) as watchers:
-      rollout = _roll(scene, receiver_name, watchers)
+    with recording_flags.recorders(draft, scene) as onlookers:
+      rollout = _roll(scene, receiver_name, onlookers)
     verdict = evaluator.evaluate(scene, rollout)
     writer.write_run(
       draft, scene, receiver_name, rollout, verdict,
@@ -111,7 +106,7 @@ def _folder() -> Iterator[tuple[pathlib.Path, pathlib.Path]]:
 def _roll(
   scene: scenario.Scenario,
   receiver_name: str,
-  watchers: Sequence[episode.Watcher],
+  onlookers: Sequence[episode.Onlooker],
 ) -> episode.Rollout:
   """Runs the episode behind a progress bar of simulated seconds."""
   from waggle_tasks.experiments.episodes import rollout as rollout_lib
@@ -123,16 +118,11 @@ def _roll(
     bar_format=form + ' simulated [{elapsed} < {remaining}]',
   ) as bar:  # fmt: skip
 
-    def watch(
-      environment: 'composer.Environment',
-      timestep: 'dm_env.TimeStep',
-      team: observer_agent.Team,
-    ) -> None:
-      del environment, team
-      if not timestep.first():
+    def watch(step: episode.Step) -> None:
+      if not step.timestep.first():
         bar.update(frame)
 
-    return rollout_lib.run(scene, receiver_name, [*watchers, watch])
+    return rollout_lib.run(scene, receiver_name, [*onlookers, watch])
 
 
 def report(scene: scenario.Scenario, verdict: verdicts.Verdict) -> str:

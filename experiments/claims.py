@@ -17,7 +17,7 @@ from absl import flags
 from waggle_tasks import errors
 from waggle_tasks.experiments import launch
 from waggle_tasks.experiments.claim_parts import book, check, documents, finding
-from waggle_tasks.experiments.flags import workers_flag
+from waggle_tasks.experiments.flags import engine_flag
 from waggle_tasks.experiments.machine import table
 from waggle_tasks.protocol import checks
 
@@ -26,7 +26,7 @@ FIGURES = 'figures'
 _ONLY = flags.DEFINE_list('only', [], 'Only these claims, by name.')
 _LIST = flags.DEFINE_boolean('list', False, 'Name all claims and fly nothing.')
 _ROOT = flags.DEFINE_string('root', '.', 'Folder of README.md and docs/.')
-_WORKERS = workers_flag.define()
+engine_flag.define_workers()
 
 
 class ClaimError(errors.WaggleError):
@@ -44,7 +44,7 @@ def main(argv: Sequence[str]) -> int:
   for name in _ONLY.value:
     checks.choice('only', name, names, ClaimError)
   library = documents.read(pathlib.Path(_ROOT.value))
-  workers, verdicts = workers_flag.count(_WORKERS.value), []
+  workers, verdicts = engine_flag.workers(), []
   for name in _ONLY.value or names:
     for found in _found(name, library, workers):
       verdicts.append(found.verdict)

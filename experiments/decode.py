@@ -118,7 +118,9 @@ def _video(path: pathlib.Path) -> int:
   # Their counts were checked.
   roi: Any = _numbers(_ROI, 4, int)
   anchor: Any = _numbers(_ANCHOR, 2, float)
-  part = recordings.Part(_START.value, _END.value, roi, anchor, _SPEED.value)
+  part = recordings.RecordingPart(
+    _START.value, _END.value, roi, anchor, _SPEED.value
+  )
   with contextlib.ExitStack() as stack:
     recording = stack.enter_context(recordings.Recording(path, _FPS.value))
     focal_px = _focal_px(recording.height)
@@ -130,7 +132,7 @@ def _video(path: pathlib.Path) -> int:
       stack.enter_context(
         folders.claimed(pathlib.Path(_ANNOTATE.value), 'annotate')
       )
-      film = annotated.Film(pathlib.Path(_ANNOTATE.value), readers[0])
+      film = annotated.AnnotatedFilm(pathlib.Path(_ANNOTATE.value), readers[0])
       stack.enter_context(film)
     for image, time_s in recording.frames(part):
       for each in readers:

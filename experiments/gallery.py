@@ -12,14 +12,15 @@ import pathlib
 import sys
 
 from absl import flags
+import cv2
 
 from waggle_tasks.experiments import launch
 from waggle_tasks.experiments.flags import receiver_flag
 from waggle_tasks.experiments.machine import files
 from waggle_tasks.experiments.pages import rooms
 from waggle_tasks.experiments.record import folders
-from waggle_tasks.experiments.results import envelope, figures, png
-from waggle_tasks.experiments.studies import sweep_results
+from waggle_tasks.experiments.results import envelope, figures
+from waggle_tasks.experiments.studies import case_rows
 
 _OUTPUT = flags.DEFINE_string(
   'output', 'docs/gallery', 'Folder of the pictures; those in it are replaced.'
@@ -46,7 +47,8 @@ def main(argv: Sequence[str]) -> int:
   from waggle_tasks.experiments.video import shots
 
   for name, picture in shots.take(_RECEIVER.value).items():
-    print(png.write(folder / name, picture))
+    _, data = cv2.imencode('.png', picture[..., ::-1])
+    print(files.replace(folder / name, data.tobytes()))
   return 0
 
 
@@ -54,7 +56,7 @@ def _envelope(
   folder: pathlib.Path, sweeps: Sequence[str]
 ) -> list[pathlib.Path]:
   rows = [
-    row for name in sweeps for row in sweep_results.read(pathlib.Path(name))
+    row for name in sweeps for row in case_rows.read_sweep(pathlib.Path(name))
   ]
   folder.mkdir(parents=True, exist_ok=True)
   return figures.draw(envelope.panels(rows), folder)

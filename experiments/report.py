@@ -13,7 +13,7 @@ from absl import flags
 
 from waggle_tasks.experiments import launch
 from waggle_tasks.experiments.pages import run_page, suite_page, sweep_output
-from waggle_tasks.experiments.studies import sweep_results
+from waggle_tasks.experiments.studies import case_rows
 
 ARGUMENTS = 'FOLDER'
 
@@ -23,10 +23,10 @@ def main(argv: Sequence[str]) -> int:
   if len(argv) != 2:
     raise flags.Error(f'takes one {ARGUMENTS}: got {argv[1:]}')
   folder = pathlib.Path(argv[1])
-  if (folder / sweep_results.JOURNAL).exists():
-    print(sweep_output.write(folder, sweep_results.read(folder)))
+  if (folder / case_rows.JOURNAL).exists():
+    print(sweep_output.write(folder, case_rows.read_sweep(folder)))
     return 0
-  is_suite = (folder / suite_page.RESULTS).exists()
+  is_suite = (folder / case_rows.RESULTS).exists()
   print((suite_page if is_suite else run_page).write(folder))
   return 0
 

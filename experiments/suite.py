@@ -19,10 +19,11 @@ from absl import flags
 from waggle_tasks import suites
 from waggle_tasks.agents import receivers
 from waggle_tasks.experiments import launch
-from waggle_tasks.experiments.flags import receiver_flag, workers_flag
+from waggle_tasks.experiments.flags import engine_flag, receiver_flag
 from waggle_tasks.experiments.pages import run_page, suite_page
 from waggle_tasks.experiments.record import archive, nulls, provenance, reach
 from waggle_tasks.experiments.results import suite_tables
+from waggle_tasks.experiments.studies import case_rows
 from waggle_tasks.protocol import checks
 
 ARGUMENTS = '[B]'
@@ -34,7 +35,7 @@ _SUITE = flags.DEFINE_string(
 )
 _CASE = flags.DEFINE_list('case', [], 'Only these cases, by name.')
 _RECEIVER = receiver_flag.define()
-_WORKERS = workers_flag.define()
+engine_flag.define()
 _OUTPUT = flags.DEFINE_string(
   'output', None, 'Result folder; unset, runs/SUITE-RECEIVER, and the cases.'
 )
@@ -56,9 +57,9 @@ def main(argv: Sequence[str]) -> int:
     if note := look(scenes, _RECEIVER.value):
       print(note, file=sys.stderr)
   # Imported here: to compare results, no simulator is needed.
-  from waggle_tasks.experiments.studies import suite_runner
+  from waggle_tasks.experiments.studies import runner, suite_study
 
-  workers = workers_flag.count(_WORKERS.value)
+  engine, what = engine_flag.engine()
   stem = pathlib.Path(_SUITE.value).stem
   name = '-'.join([stem, _RECEIVER.value, *_CASE.value])
   folder = pathlib.Path(_OUTPUT.value or f'runs/{name}')
@@ -66,18 +67,17 @@ def main(argv: Sequence[str]) -> int:
     'suite', [f'--suite={_SUITE.value}', f'--receiver={_RECEIVER.value}']
   )
   began_s = time.monotonic()
-  rows = suite_runner.run(
-    cases, _RECEIVER.value, folder, workers, command, run_page.leave
-  )
+  study = suite_study.Suite(cases, _RECEIVER.value, run_page.leave)
+  rows = runner.run(study, folder, engine, command)
   wall_s = time.monotonic() - began_s
   page = suite_page.write(folder)
   print(suite_tables.report(rows))
-  simulated_s = sum(row['simulated_s'] for row in rows)
+  simulated_s = sum(row.simulated_s for row in rows)
   print(
     f'\n{len(rows)} cases, {simulated_s:.0f} s simulated, {wall_s:.0f} s of'
-    f' wall time in this call with {workers} workers, {page}'
+    f' wall time in this call with {what}, {page}'
   )
-  return 0 if all(map(_as_expected, rows)) else 1
+  return 0 if all(row.as_expected for row in rows) else 1
 
 
 def _cases() -> tuple[suites.Case, ...]:
@@ -103,18 +103,12 @@ def _own(path: str) -> tuple[suites.Case, ...]:
   return suites.from_rows(rows)
 
 
-def _as_expected(row: suite_tables.Row) -> bool:
-  """Whether a case passed, or failed as published."""
-  ours = {'correct': row['correct'], 'passed': row['passed']}
-  return row['passed'] or row['published'] == ours
-
-
 def _compare(folders: Sequence[str]) -> int:
   if len(folders) != 2:
     raise flags.Error(f'--compare takes two folders: got {len(folders)}.')
   one, other = folders
   try:
-    a, b = (suite_page.read(pathlib.Path(folder)) for folder in folders)
+    a, b = (case_rows.read_suite(pathlib.Path(each)) for each in folders)
   except archive.ArchiveError as error:
     raise suites.SuiteError(
       f'`compare` must name folders of finished suites: {error}'

@@ -10,7 +10,6 @@ flies nothing and makes the map of the sweeps in FOLDERs, finished or not.
 """
 
 from collections.abc import Sequence
-import functools
 import pathlib
 import sys
 
@@ -19,14 +18,14 @@ from absl import flags
 from waggle_tasks.agents import receivers
 from waggle_tasks.experiments import launch
 from waggle_tasks.experiments.flags import (
+  engine_flag,
   receiver_flag,
   scenario_flags,
-  workers_flag,
 )
 from waggle_tasks.experiments.pages import sweep_output
 from waggle_tasks.experiments.record import folders, nulls, provenance, reach
 from waggle_tasks.experiments.results import envelope, figures, sweep_tables
-from waggle_tasks.experiments.studies import sweep_cases, sweep_results
+from waggle_tasks.experiments.studies import case_rows, sweep_cases
 from waggle_tasks.protocol import checks
 
 ARGUMENTS = '[FOLDER ...]'
@@ -40,11 +39,7 @@ _GRID = flags.DEFINE_multi_string(
 )  # fmt: skip
 _REPEATS = flags.DEFINE_integer('repeats', 1, 'Episodes of each cell.')
 _RECEIVER = receiver_flag.define()
-_WORKERS = workers_flag.define()
-_SCHEDULER = flags.DEFINE_string(
-  'scheduler', None, 'Fly on a Dask cluster: tcp://HOST:PORT of its scheduler,'
-  ' or the JSON file that it wrote.',
-)  # fmt: skip
+engine_flag.define()
 _REPLAYS = flags.DEFINE_integer(
   'replays', 0, 'Fly each case before observers who only watch, and show the'
   ' images of each so many times to a receiver, spoilt in ways that are drawn.',
@@ -74,20 +69,14 @@ def main(argv: Sequence[str]) -> int:
     if note := look(scenes, _RECEIVER.value):
       print(note, file=sys.stderr)
   # Imported here: to show results, no simulator is needed.
-  from waggle_tasks.experiments.studies import cluster, pool, sweep_runner
+  from waggle_tasks.experiments.studies import runner, sweep_study
 
-  workers = workers_flag.count(_WORKERS.value)
-  engine: sweep_runner.Engine = functools.partial(pool.run, workers=workers)
-  if _SCHEDULER.value is not None:
-    place = cluster.find(_SCHEDULER.value)
-    engine = functools.partial(cluster.run, place=place)
+  engine, _ = engine_flag.engine()
   command = provenance.command_line('sweep', launch.given_flags())
   factors = '-'.join(['sweep', _RECEIVER.value, *grid])
   folder = pathlib.Path(_OUTPUT.value or f'runs/{factors}')
-  rows = sweep_runner.run(
-    cases, _RECEIVER.value, folder, engine, command, _REPLAYS.value
-  )
-  return _show(folder, rows)
+  study = sweep_study.Sweep(cases, _RECEIVER.value, _REPLAYS.value)
+  return _show(folder, runner.run(study, folder, engine, command))
 
 
 def _summary(names: Sequence[str]) -> int:
@@ -95,7 +84,7 @@ def _summary(names: Sequence[str]) -> int:
   if not names:
     raise flags.Error('--summary takes at least one FOLDER: got none.')
   rows = [
-    row for name in names for row in sweep_results.read(pathlib.Path(name))
+    row for name in names for row in case_rows.read_sweep(pathlib.Path(name))
   ]
   if _OUTPUT.value is not None:
     folders.check_writable(pathlib.Path(_OUTPUT.value))

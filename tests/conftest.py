@@ -6,6 +6,7 @@ finds it.
 
 from collections.abc import Callable, Iterator, Sequence
 import dataclasses
+import json
 import math
 import os
 import pathlib
@@ -59,6 +60,43 @@ def waggle() -> Callable[..., subprocess.CompletedProcess[str]]:
       cwd=cwd,
       env=os.environ | environment,
     )
+
+  return run
+
+
+# Python and dm_control take a second to start, so that one process takes every
+# line; it forgets the flags in between.
+_ASK = """
+import contextlib, io, json, os, sys
+from absl import flags
+from waggle_tasks.experiments import launch
+
+answers = []
+for command, *argv in json.load(sys.stdin):
+  for name in flags.FLAGS:
+    flags.FLAGS[name].unparse()
+  said = io.StringIO()
+  with contextlib.redirect_stderr(said), contextlib.redirect_stdout(said):
+    try:
+      module = f'waggle_tasks.experiments.{command}'
+      status = launch.run(module, [command, *argv])
+    except Exception as error:
+      status = repr(error)
+  answers.append((status, said.getvalue(), sorted(os.listdir())))
+print(json.dumps(answers))
+"""
+
+
+@pytest.fixture(scope='session')
+def ask() -> Callable[[Sequence[Sequence[str]], pathlib.Path], list]:
+  """Gives one command many lines; its status, output and files after each."""
+
+  def run(lines: Sequence[Sequence[str]], here: pathlib.Path) -> list:
+    done = subprocess.run(
+      [sys.executable, '-c', _ASK], input=json.dumps(lines),
+      capture_output=True, text=True, check=True, cwd=here,
+    )  # fmt: skip
+    return json.loads(done.stdout)
 
   return run
 
@@ -275,6 +313,8 @@ def _session(leader: int) -> dict[int, str]:
 @pytest.fixture
 def session() -> Callable[[int], dict[int, str]]:
   """The living processes of a session, by id, and their command lines."""
+  if not pathlib.Path('/proc/self/stat').exists():
+    pytest.skip('needs /proc, which macOS has not')
   return _session
 
 

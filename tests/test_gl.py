@@ -86,7 +86,21 @@ def test_this_machine_renders() -> None:
 def test_each_failure_gets_the_line_that_mends_it(
   environ: dict[str, str], error: str, line: str
 ) -> None:
-  assert gl.mend(environ, error) == line
+  assert gl.mend(environ, error, 'linux') == line
+
+
+@pytest.mark.parametrize(
+  ('environ', 'line'),
+  [
+    ({'MUJOCO_GL': 'egl'}, 'unset MUJOCO_GL'),
+    ({'MUJOCO_GL': 'glfw'}, 'pip install --force-reinstall glfw'),
+    ({}, 'pip install --force-reinstall glfw'),
+  ],
+)
+def test_nobody_is_sent_to_a_library_that_their_system_has_not(
+  environ: dict[str, str], line: str
+) -> None:
+  assert gl.mend(environ, 'gladLoadGL error', 'darwin') == line
 
 
 def test_a_machine_that_renders_has_no_problem() -> None:

@@ -29,7 +29,7 @@ def test_a_job_that_tells_more_than_its_time_does_not_overrun(
   capsys: pytest.CaptureFixture[str],
 ) -> None:
   job = pool.Job('one', print, ())
-  news = [pool.Progress(job, 1.6), pool.Progress(job, 2.4), pool.Done(job, 1)]
+  news = [pool.Advance(job, 1.6), pool.Advance(job, 2.4), pool.Done(job, 1)]
   with warnings.catch_warnings():
     warnings.simplefilter('error')
     done = [*job_progress.shown(news, {'one': 2.0}, lambda *_: 'one')]

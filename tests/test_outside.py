@@ -27,9 +27,10 @@ from waggle_tasks.experiments.record import (
 )
 from waggle_tasks.experiments.studies import (
   pool,
-  suite_runner,
+  runner,
+  suite_study,
   sweep_cases,
-  sweep_runner,
+  sweep_study,
 )
 
 Write = Callable[[str, str], types.ModuleType]
@@ -244,11 +245,12 @@ def test_what_has_no_source_is_refused(
   error = r'^Mine decides results and must come from a file, .*import it$'
   with pytest.raises(source_files.UnknownSourceError, match=error):
     identity()
-  folder, line = tmp_path / 'results', 'waggle x'
-  with pytest.raises(source_files.UnknownSourceError, match=error):
-    sweep_runner.run(cases, 'mine', folder, pool.run, line)
-  with pytest.raises(source_files.UnknownSourceError, match=error):
-    suite_runner.run(cases, 'mine', folder, 1, line, run_page.leave)
+  for study in (
+    sweep_study.Sweep(cases, 'mine'),
+    suite_study.Suite(cases, 'mine', run_page.leave),
+  ):
+    with pytest.raises(source_files.UnknownSourceError, match=error):
+      runner.run(study, tmp_path / 'results', pool.run, 'waggle x')
   assert not (tmp_path / 'results').exists()
 
 

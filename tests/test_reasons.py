@@ -43,7 +43,7 @@ def play() -> Iterator[Callable[..., tuple]]:
     scene: scenario.Scenario,
     receiver_name: str,
     change: Callable[[composer.Environment], object] = lambda environment: None,
-    watch: episode.Watcher = lambda *seen: None,
+    watch: episode.Onlooker = lambda *seen: None,
   ) -> tuple[rollout_lib.Rollout, verdicts.Outcome]:
     environment = registry.environment(scene)
     made.append(environment)
@@ -71,7 +71,7 @@ def test_a_message_leads_to_the_agreed_height_for_everyone(
   rollout, outcome = play(
     scene,
     'view_bank',
-    watch=lambda environment, timestep, team: rewards.append(timestep.reward),
+    watch=lambda step: rewards.append(step.timestep.reward),
   )
   assert outcome.failures == ()
   assert outcome.decoded == '000010'
@@ -116,13 +116,10 @@ def test_a_tilted_camera_is_the_reason_for_reading_nothing(
 def test_a_vehicle_that_is_pushed_off_its_path_is_the_reason(
   play: Callable[..., tuple], short: dict[str, object]
 ) -> None:
-  def push(
-    environment: composer.Environment, timestep: object, team: object
-  ) -> None:
-    del timestep, team
-    physics = environment.physics
+  def push(step: episode.Step) -> None:
+    physics = step.environment.physics
     wind_n = 0.15 if 4.0 < physics.time() < 8.0 else 0.0
-    body = environment.task.performer.airframe
+    body = step.environment.task.performer.airframe
     physics.bind(body).xfrc_applied[:3] = (wind_n, 0.0, 0.0)
 
   scene = scenario.Scenario(observers=1, duration_s=20.0, **short)

@@ -5,7 +5,7 @@ import mujoco
 
 from waggle_tasks import runtime, scenarios
 from waggle_tasks import scenario as scenario_lib
-from waggle_tasks.arenas import flight_room
+from waggle_tasks.arenas import flight_room, layouts
 from waggle_tasks.entities import observer, performer
 from waggle_tasks.tasks import broadcast, copies, furnish
 from waggle_tasks.tasks import parts as parts_lib
@@ -29,14 +29,16 @@ def parts(scenario: Scenario) -> parts_lib.Parts:
   agreement = scenario.agreement
   observers = tuple(
     observer.Observer(
-      f'observer_{number}',
+      name,
       scenario.camera,
       scenario.eye_offset_m,
       sensor,
       agreement,
       scenario.dynamics,
     )
-    for number, sensor in enumerate(scenario.sensors, 1)
+    for name, sensor in zip(
+      layouts.names(scenario.observers), scenario.sensors, strict=True
+    )
   )
   made = parts_lib.Parts(
     room=flight_room.FlightRoom(scenario.appearance, agreement=agreement),

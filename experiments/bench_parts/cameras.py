@@ -51,7 +51,7 @@ class Cameras:
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
-class Flight:
+class FlownBroadcast:
   """A broadcast as it was flown.
 
   Attributes:
@@ -63,7 +63,7 @@ class Flight:
   phases: tuple[str, ...]
 
 
-def fly(scene: scenario.Scenario) -> Flight:
+def fly(scene: scenario.Scenario) -> FlownBroadcast:
   """Flies a broadcast without images; observers follow it all the same."""
   environment = registry.environment(scene)
   task, qpos = environment.task, []
@@ -88,7 +88,7 @@ def fly(scene: scenario.Scenario) -> Flight:
         action.append(pilot.step(position_m, time_s).to_array())
       timestep = environment.step(action)
   whole = np.stack(qpos)
-  return Flight(whole, tuple(_phases(whole)))
+  return FlownBroadcast(whole, tuple(_phases(whole)))
 
 
 def _phases(qpos: np.ndarray) -> Iterator[str]:
@@ -193,7 +193,7 @@ def measure(
 
 
 def _draw_flight(
-  studios: Mapping[str, _Studio], flight: Flight
+  studios: Mapping[str, _Studio], flight: FlownBroadcast
 ) -> dict[str, list[float]]:
   """Seconds for an image, by camera, of each frame that it drew."""
   spent: dict[str, list[float]] = {name: [] for name in studios}

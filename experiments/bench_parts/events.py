@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterator, Sequence
 import dataclasses
+import itertools
 
 import cv2
 
@@ -9,13 +10,14 @@ from waggle_tasks import suites
 from waggle_tasks.entities import optics
 from waggle_tasks.experiments.bench_parts import loops
 from waggle_tasks.experiments.episodes import rollout
+from waggle_tasks.experiments.machine import table
 from waggle_tasks.experiments.record import writer
 from waggle_tasks.experiments.studies import job_progress, pool
 
 
 @dataclasses.dataclass(frozen=True)
-class Verdict:
-  """One case with either camera.
+class Logs:
+  """The event logs of one case with either camera.
 
   Attributes:
     case: Its name.
@@ -29,7 +31,7 @@ class Verdict:
   difference: tuple[str, str] | None
 
 
-def compare(cases: Sequence[suites.Case], workers: int) -> Iterator[Verdict]:
+def compare(cases: Sequence[suites.Case], workers: int) -> Iterator[Logs]:
   """Runs cases with either camera, behind a bar of simulated seconds.
 
   The provenance of a message is part of its event: equal logs also mean that
@@ -40,7 +42,7 @@ def compare(cases: Sequence[suites.Case], workers: int) -> Iterator[Verdict]:
     workers: How many processes.
 
   Yields:
-    A verdict for each case when it is over.
+    The logs of each case when it is over.
   """
   jobs = [
     pool.Job(f'{case.name} {camera}', _fly, (case, camera))
@@ -56,21 +58,34 @@ def compare(cases: Sequence[suites.Case], workers: int) -> Iterator[Verdict]:
     found[camera] = done.value
     if len(found) == len(optics.CAMERAS):
       one, other = (found[camera] for camera in optics.CAMERAS)
-      yield Verdict(case.name, len(one), difference(one, other))
+      yield Logs(case.name, len(one), difference(one, other))
+
+
+def report(found: Sequence[Logs]) -> str:
+  """Whether logs are equal, case by case."""
+  rows = [
+    (each.case, str(each.events), 'differ' if each.difference else 'equal')
+    for each in found
+  ]
+  lines = [table.render(('case', 'events', 'event logs'), rows), '']
+  for each in found:
+    if each.difference:
+      one, other = (line or 'nothing' for line in each.difference)
+      lines += [
+        f'{each.case}, incremental: {one}',
+        f'{each.case}, full: {other}',
+      ]
+  equal = sum(each.difference is None for each in found)
+  lines.append(f'{equal} of {len(found)} event logs are equal.')
+  return '\n'.join(lines)
 
 
 def difference(
   one: Sequence[str], other: Sequence[str]
 ) -> tuple[str, str] | None:
   """The first pair of lines that differ; a line that is missing is empty."""
-  for number in range(max(len(one), len(other))):
-    pair = (
-      ''.join(one[number : number + 1]),
-      ''.join(other[number : number + 1]),
-    )
-    if pair[0] != pair[1]:
-      return pair
-  return None
+  pairs = itertools.zip_longest(one, other, fillvalue='')
+  return next((pair for pair in pairs if pair[0] != pair[1]), None)
 
 
 def _fly(
@@ -79,5 +94,5 @@ def _fly(
   """The event log of a case; called in a worker."""
   cv2.setNumThreads(1)  # Workers share the cores.
   scene = dataclasses.replace(case.scene, camera=camera)
-  watchers = [job_progress.reporter(report)]
-  return list(writer.event_lines(rollout.run(scene, loops.RECEIVER, watchers)))
+  onlookers = [job_progress.reporter(report)]
+  return list(writer.event_lines(rollout.run(scene, loops.RECEIVER, onlookers)))

@@ -1,20 +1,23 @@
-"""Whole broadcasts by the clock."""
+"""Whole broadcasts by the clock, and what they take of memory and cores."""
 
 from collections.abc import Sequence
+from concurrent import futures
+import contextlib
 import dataclasses
+import resource
+import sys
 import time
 
-from dm_control import composer
-import dm_env
-
 from waggle_tasks import scenario
-from waggle_tasks.agents import observer_agent
 from waggle_tasks.experiments.bench_parts import processes
 from waggle_tasks.experiments.episodes import rollout
 from waggle_tasks.experiments.record import episode
 from waggle_tasks.protocol import agreement
 
 RECEIVER = 'klt'
+COUNTS = (1, 2)  # Of processes.
+# `ru_maxrss` is in kilobytes on Linux and in bytes on macOS (getrusage(2)).
+_UNIT_MB = 2**-20 if sys.platform == 'darwin' else 2**-10
 
 
 @dataclasses.dataclass(frozen=True)
@@ -49,22 +52,16 @@ class Loop:
 
 
 class _Watch:
-  """A watcher that notes when the first and the last step ended."""
+  """An onlooker that notes when the first and the last step ended."""
 
   def __init__(self, clock: processes.Clock) -> None:
     self._clock = clock
     self.first_s = self.last_s = 0.0
     self.steps = 0
 
-  def __call__(
-    self,
-    environment: composer.Environment,
-    timestep: dm_env.TimeStep,
-    team: observer_agent.Team,
-  ) -> None:
-    del environment, team
+  def __call__(self, step: episode.Step) -> None:
     self.last_s = self._clock()
-    if timestep.first():
+    if step.timestep.first():
       self.first_s = self.last_s
     else:
       self.steps += 1
@@ -73,18 +70,18 @@ class _Watch:
 def run(
   scene: scenario.Scenario,
   clock: processes.Clock = time.perf_counter,
-  watchers: Sequence[episode.Watcher] = (),
+  onlookers: Sequence[episode.Onlooker] = (),
 ) -> Loop:
   """Runs a broadcast with the paper's receiver.
 
   Args:
     scene: The scenario.
     clock: What the loop is measured by.
-    watchers: What else looks on.
+    onlookers: What else looks on.
   """
   watch = _Watch(clock)
   cpu_s, begin_s = time.process_time(), time.perf_counter()
-  rollout.run(scene, RECEIVER, [*watchers, watch])
+  rollout.run(scene, RECEIVER, [*onlookers, watch])
   return Loop(
     scene.observers,
     watch.steps,
@@ -100,12 +97,51 @@ def repeat(
 ) -> list[Loop]:
   """Runs every scenario once, then all of them again, and so on.
 
-  A broadcast of two frames comes first, as first calls are slow.
-
   Returns:
     The loops in the order in which they ran.
   """
-  run(
-    dataclasses.replace(scenes[0], duration_s=2 * scenes[0].agreement.frame_s)
-  )
+  run(two_frames(scenes[0]))
   return [run(scene, clock) for _ in range(repeats) for scene in scenes]
+
+
+def peaks_mb(scene: scenario.Scenario, broadcasts: int) -> list[float]:
+  """The peak memory of this process so far after each of some broadcasts."""
+  out = []
+  for _ in range(broadcasts):
+    run(scene)
+    usage = resource.getrusage(resource.RUSAGE_SELF)
+    out.append(usage.ru_maxrss * _UNIT_MB)
+  return out
+
+
+def throughput(
+  scene: scenario.Scenario, repeats: int
+) -> dict[int, list[float]]:
+  """Simulated seconds per second of wall time, by the number of processes.
+
+  Every process runs the same broadcast at once, builds its environment and
+  closes it. Processes start, and run a broadcast of two frames, before they
+  are measured.
+  """
+  out: dict[int, list[float]] = {count: [] for count in COUNTS}
+  with contextlib.ExitStack() as stack:
+    team = [stack.enter_context(processes.worker()) for _ in range(max(COUNTS))]
+    _together(team, two_frames(scene))
+    for _ in range(repeats):
+      for count in COUNTS:
+        out[count].append(_together(team[:count], scene))
+  return out
+
+
+def _together(
+  team: Sequence[futures.Executor], scene: scenario.Scenario
+) -> float:
+  begin_s = time.perf_counter()
+  jobs = [executor.submit(run, scene) for executor in team]
+  simulated_s = sum(job.result().simulated_s for job in jobs)
+  return simulated_s / (time.perf_counter() - begin_s)
+
+
+def two_frames(scene: scenario.Scenario) -> scenario.Scenario:
+  """What comes before a measurement, as first calls are slow."""
+  return dataclasses.replace(scene, duration_s=2 * scene.agreement.frame_s)

@@ -15,6 +15,7 @@ import time
 from typing import TypeVar
 
 from waggle_tasks import errors
+from waggle_tasks.experiments.machine import cores
 
 _Result = TypeVar('_Result')
 
@@ -27,13 +28,6 @@ _THREADS = ('OMP_NUM_THREADS', 'OPENBLAS_NUM_THREADS')
 
 class ProcessError(errors.WaggleError):
   """A process to measure in that died."""
-
-
-def cores() -> list[int]:
-  """The cores that this process may run on."""
-  if hasattr(os, 'sched_getaffinity'):
-    return sorted(os.sched_getaffinity(0))
-  return list(range(os.cpu_count() or 1))
 
 
 def clock(renderer_name: str) -> Clock:
@@ -73,7 +67,7 @@ def worker(core: int | None = None) -> Iterator[futures.Executor]:
 
 def alone(function: Callable[..., _Result], *arguments: object) -> _Result:
   """Calls a function in a new process, on the last core."""
-  with worker(cores()[-1]) as executor:
+  with worker(cores.usable()[-1]) as executor:
     return executor.submit(function, *arguments).result()
 
 

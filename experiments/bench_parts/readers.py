@@ -2,16 +2,14 @@
 
 from collections.abc import Sequence
 
-from dm_control import composer
-import dm_env
-
 from waggle_tasks import scenario
-from waggle_tasks.agents import observer_agent, receiver, receivers
+from waggle_tasks.agents import receiver, receivers
 from waggle_tasks.experiments.bench_parts import loops, processes
+from waggle_tasks.experiments.record import episode
 
 
-class Audience:
-  """A watcher that lets several receivers read what each observer sees.
+class Readers:
+  """An onlooker that lets several receivers read what each observer sees.
 
   Attributes:
     seconds: By receiver, what each image took until it had the message.
@@ -33,16 +31,10 @@ class Audience:
     }
     self.seconds: dict[str, list[float]] = {n: [] for n in self._readers}
 
-  def __call__(
-    self,
-    environment: composer.Environment,
-    timestep: dm_env.TimeStep,
-    team: observer_agent.Team,
-  ) -> None:
+  def __call__(self, step: episode.Step) -> None:
     """Shows a time step's images to those who still read."""
-    del environment, team
     for name, readers in self._readers.items():
-      for index, each in enumerate(timestep.observation):
+      for index, each in enumerate(step.timestep.observation):
         reader = readers[index]
         if reader is None:
           continue
@@ -60,14 +52,21 @@ def measure(
   clock: processes.Clock,
   names: Sequence[str],
 ) -> list[dict[str, list[float]]]:
-  """Runs a broadcast for receivers of some names at a time.
+  """Runs a broadcast for several receivers at a time.
+
+  Args:
+    scene: The broadcast.
+    repeats: How often.
+    clock: What images are measured by.
+    names: The receivers beside the paper's; empty for all that have a name.
 
   Returns:
     For each repeat, by receiver, the seconds of every image.
   """
+  names = [*dict.fromkeys([loops.RECEIVER, *(names or receivers.RECEIVERS)])]
   out = []
   for _ in range(repeats):
-    audience = Audience(scene, clock, names)
-    loops.run(scene, clock, [audience])
-    out.append(audience.seconds)
+    readers = Readers(scene, clock, names)
+    loops.run(scene, clock, [readers])
+    out.append(readers.seconds)
   return out

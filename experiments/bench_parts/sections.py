@@ -1,19 +1,18 @@
 """The parts of the benchmark by name: what each runs, and where."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 import dataclasses
+from typing import Any, TypeVar
 
 from waggle_tasks import errors, registry, scenario
 from waggle_tasks.agents import receivers
 from waggle_tasks.experiments.bench_parts import (
   cameras,
   loops,
-  memory,
   pilots,
   processes,
   readers,
   stages,
-  workers,
 )
 from waggle_tasks.protocol import agreement, checks, symbols
 
@@ -22,6 +21,8 @@ BROADCASTS = 20  # How many in one process, for its memory.
 # An arc on which 16 observers stand 0.18 m apart, and fewer see the same.
 _HALF_SPAN_DEG = 60.0
 _MEMORY_S = 2.0
+
+_Result = TypeVar('_Result')
 
 
 class BenchError(errors.WaggleError):
@@ -75,6 +76,16 @@ class Settings:
     return self._first(seconds)
 
   @property
+  def crowds(self) -> list[scenario.Scenario]:
+    """The same for different numbers of observers."""
+    return [
+      dataclasses.replace(
+        self.gesture, observers=count, half_span_deg=_HALF_SPAN_DEG
+      )
+      for count in OBSERVERS
+    ]
+
+  @property
   def glimpse(self) -> scenario.Scenario:
     """Its first two seconds; all of it with `long`."""
     return self.whole if self.long else self._first(_MEMORY_S)
@@ -98,76 +109,42 @@ class Memory:
   after_mb: list[float]
 
 
-def measure_cameras(settings: Settings) -> cameras.Cameras:
-  """One image of every camera."""
+def _memory(settings: Settings) -> Memory:
+  (whole_mb,) = processes.alone(loops.peaks_mb, settings.whole, 1)
+  after_mb = processes.alone(loops.peaks_mb, settings.glimpse, BROADCASTS)
+  return Memory(whole_mb, after_mb)
+
+
+def _alone(
+  measure: Callable[..., _Result],
+  settings: Settings,
+  *more: object,
+  what: object = None,
+) -> _Result:
+  """Measures the default broadcast, or something else, in a new process."""
   return processes.alone(
-    cameras.measure, settings.whole, settings.repeats, settings.clock
+    measure, what or settings.whole, settings.repeats, settings.clock, *more
   )
 
 
-def measure_stages(settings: Settings) -> list[dict[str, float]]:
-  """The loop's stages."""
-  return processes.alone(
-    stages.measure, settings.whole, settings.repeats, settings.clock
-  )
-
-
-def measure_receivers(settings: Settings) -> list[dict[str, list[float]]]:
-  """Receivers on the same images."""
-  names = settings.receivers or [*receivers.RECEIVERS]
-  return processes.alone(
-    readers.measure, settings.whole, settings.repeats, settings.clock,
-    [*dict.fromkeys([loops.RECEIVER, *names])],
-  )  # fmt: skip
-
-
-def measure_realtime(settings: Settings) -> list[loops.Loop]:
-  """The default broadcast, everything included."""
-  return processes.alone(
-    loops.repeat, [settings.whole], settings.repeats, settings.clock
-  )
-
-
-def measure_dynamics(settings: Settings) -> pilots.Flying:
-  """The default broadcast by each dynamics, in turns."""
-  return processes.alone(
-    pilots.measure, settings.whole, settings.repeats, settings.clock
-  )
-
-
-def measure_observers(settings: Settings) -> list[loops.Loop]:
-  """Broadcasts of different numbers of observers, in turns."""
-  scenes = [
-    dataclasses.replace(
-      settings.gesture, observers=count, half_span_deg=_HALF_SPAN_DEG
-    )
-    for count in OBSERVERS
-  ]
-  return processes.alone(loops.repeat, scenes, settings.repeats, settings.clock)
-
-
-def measure_memory(settings: Settings) -> Memory:
-  """Peak memory, and whether it stays where it is."""
-  (whole_mb,) = processes.alone(memory.measure, settings.whole, 1)
-  return Memory(
-    whole_mb, processes.alone(memory.measure, settings.glimpse, BROADCASTS)
-  )
-
-
-def measure_workers(settings: Settings) -> dict[int, list[float]]:
-  """The throughput of one process and of two."""
-  return workers.measure(settings.gesture, settings.repeats)
-
-
-SECTIONS = {
-  'cameras': measure_cameras,
-  'stages': measure_stages,
-  'receivers': measure_receivers,
-  'realtime': measure_realtime,
-  'dynamics': measure_dynamics,
-  'observers': measure_observers,
-  'memory': measure_memory,
-  'workers': measure_workers,
+# What each part measures.
+SECTIONS: dict[str, Callable[[Settings], Any]] = {
+  'cameras': lambda settings: _alone(cameras.measure, settings),
+  'stages': lambda settings: _alone(stages.measure, settings),
+  'receivers': lambda settings: _alone(
+    readers.measure, settings, settings.receivers
+  ),
+  'realtime': lambda settings: _alone(
+    loops.repeat, settings, what=[settings.whole]
+  ),
+  'dynamics': lambda settings: _alone(pilots.measure, settings),
+  'observers': lambda settings: _alone(
+    loops.repeat, settings, what=settings.crowds
+  ),
+  'memory': _memory,
+  'workers': lambda settings: loops.throughput(
+    settings.gesture, settings.repeats
+  ),
 }
 
 

@@ -12,14 +12,14 @@ import dataclasses
 import functools
 
 import cv2
-from dm_control import composer, mjcf
+from dm_control import mjcf
 from dm_control.composer.observation import updater
-import dm_env
 
 from waggle_tasks import scenario
-from waggle_tasks.agents import navigator, observer_agent, provenance, receivers
+from waggle_tasks.agents import navigator, provenance, receivers
 from waggle_tasks.entities import renderer
 from waggle_tasks.experiments.bench_parts import loops, processes
+from waggle_tasks.experiments.record import episode
 from waggle_tasks.tasks import broadcast
 
 OTHER = 'other'
@@ -64,7 +64,7 @@ STAGES = (
 class Timer:
   """Counts seconds for the stage that runs now, and for that one alone.
 
-  As a watcher of a rollout it begins with the first step and ends with the
+  As an onlooker of a rollout it begins with the first step and ends with the
   last.
   """
 
@@ -80,16 +80,10 @@ class Timer:
     self._stage = OTHER
     self._since_s = 0.0
 
-  def __call__(
-    self,
-    environment: composer.Environment,
-    timestep: dm_env.TimeStep,
-    team: observer_agent.Team,
-  ) -> None:
+  def __call__(self, step: episode.Step) -> None:
     """Takes a time step."""
-    del environment, team
     self._enter(OTHER)
-    if timestep.first():
+    if step.timestep.first():
       self.seconds.clear()
     else:
       self.steps += 1
@@ -140,7 +134,7 @@ def measure(
   Returns:
     For each repeat the stages in the order of `STAGES`, and the rest.
   """
-  loops.run(dataclasses.replace(scene, duration_s=2 * scene.agreement.frame_s))
+  loops.run(loops.two_frames(scene))
   names = dict.fromkeys([*(each.stage for each in STAGES), OTHER])
   out = []
   for _ in range(repeats):

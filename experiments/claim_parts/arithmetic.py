@@ -9,6 +9,7 @@ import re
 from waggle_tasks import suites
 from waggle_tasks.experiments.claim_parts import documents, finding
 from waggle_tasks.experiments.results import suite_tables, sweep_tables
+from waggle_tasks.experiments.studies import case_rows
 
 _RIGHT = re.compile(r'^right: (\d+)/(\d+) exposures')
 _EVENTS = re.compile(r'^([a-z ]+): (\d+) in (\d+) exposures')
@@ -112,18 +113,19 @@ def _suite(block: documents.Block) -> _Found:
       yield _same(block.place(at), says, line)
 
 
-def _result(row: tuple[str, ...], control: bool) -> suite_tables.Row:
+def _result(row: tuple[str, ...], control: bool) -> case_rows.SuiteRow:
   """A line of a suite, as much of it as its totals need."""
   (correct, _), (theirs, _) = (
     finding.fraction(cell) or (0, 0) for cell in row[2:4]
   )
-  return {
-    'observers': int(row[1]),
-    'expecting': None if control else int(row[1]),
-    'correct': correct,
-    'passed': row[4] == 'Pass',
-    'published': {'correct': theirs, 'passed': row[5] == 'Pass'},
-  }
+  observers = int(row[1])
+  return case_rows.SuiteRow(
+    case='', group='', label=row[0], identity='', receiver='',
+    observers=observers, expecting=0 if control else observers,
+    correct=correct, passed=row[4] == 'Pass', simulated_s=0.0,
+    published=suites.Published(theirs, row[5] == 'Pass'), outcomes=(),
+    scenario={},
+  )  # fmt: skip
 
 
 def _moved(block: documents.Block) -> _Found:

@@ -15,14 +15,14 @@ from waggle_tasks.experiments.claim_parts import (
   documents,
   finding,
 )
-from waggle_tasks.experiments.studies import sweep_results
+from waggle_tasks.experiments.studies import case_rows
 
 # Launchers that leave a folder, and so are told where.
 _LEAVES = ('broadcast', 'sweep', 'suite', 'sensitivity', 'ablate')
 _MOST = 1  # The exit status of a command that ran; above, it did not.
 
 
-class CommandError(errors.WaggleError):
+class RerunError(errors.WaggleError):
   """A command that did not run."""
 
 
@@ -37,7 +37,7 @@ def claim(
     workers: How many processes fly.
 
   Raises:
-    CommandError: if its command did not run.
+    RerunError: if its command did not run.
   """
   block = library.blocks.get(each.block)
   if block is None:
@@ -59,10 +59,8 @@ def claim(
       case book.ROWS:
         return compare.rows(block, printed)
       case book.CELLS:
-        rows = sweep_results.read(folder)
+        rows = case_rows.read_sweep(folder)
         return compare.cells(block, rows, each.table)
-      case book.PATTERN:
-        return compare.pattern(block, printed, each.detail)
     return compare.part(block, printed)
 
 
@@ -84,7 +82,7 @@ def _run(
     stdout=subprocess.PIPE, text=True, check=False,
   )  # fmt: skip
   if child.returncode not in range(_MOST + 1):
-    raise CommandError(
+    raise RerunError(
       f'`waggle {" ".join(command)}` must run: it ended with exit status'
       f' {child.returncode}'
     )

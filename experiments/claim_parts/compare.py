@@ -90,7 +90,7 @@ def cells(
   tables = block.tables if number is None else block.tables[number : number + 1]
   found = [
     _cell(block, tables, cell, [*members])
-    for cell, members in itertools.groupby(results, lambda row: row['cell'])
+    for cell, members in itertools.groupby(results, lambda row: row.cell)
   ]
   return finding.gathered(block.place(), found, 'cells were flown again')
 
@@ -190,15 +190,3 @@ def _totals(block: documents.Block, printed: documents.Block) -> _Found:
           block.place(index), line, f'{some} of {of} in a part'
         )
       )
-
-
-def pattern(
-  block: documents.Block, printed: documents.Block, wanted: str
-) -> list[finding.Finding]:
-  """What a pattern finds is the same in both."""
-  says, made = (
-    re.findall(wanted, '\n'.join(each.lines)) for each in (block, printed)
-  )
-  if says == made:
-    return finding.gathered(block.place(), [None] * len(says), 'figures agree')
-  return [finding.differs(block.place(), ', '.join(says), ', '.join(made))]

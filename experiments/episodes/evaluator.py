@@ -13,6 +13,7 @@ import numpy as np
 
 from waggle_tasks import scenario
 from waggle_tasks.agents import observer_agent, receiver
+from waggle_tasks.arenas import layouts
 from waggle_tasks.experiments.episodes import reasons
 from waggle_tasks.experiments.record import episode, verdicts
 from waggle_tasks.protocol import flight
@@ -47,8 +48,7 @@ def evaluate(
 ) -> verdicts.Verdict:
   """Scores every observer of an episode."""
   outcomes = []
-  for number in range(1, scene.observers + 1):
-    name = f'observer_{number}'
+  for number, name in enumerate(layouts.names(scene.observers), 1):
     expected = expected_bits(scene, number)
     if expected is None:
       outcomes.append(_judge_waiting(rollout, name))

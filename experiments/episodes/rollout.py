@@ -8,7 +8,7 @@ import numpy as np
 
 from waggle_tasks import registry, scenario
 from waggle_tasks.agents import observer_agent
-from waggle_tasks.experiments.episodes import sight
+from waggle_tasks.experiments.episodes import true_places
 from waggle_tasks.experiments.record import episode, flown, provenance
 from waggle_tasks.experiments.record import traces as traces_lib
 
@@ -20,14 +20,14 @@ Rollout = episode.Rollout
 def run(
   scene: scenario.Scenario,
   receiver_name: str,
-  watchers: Sequence[episode.Watcher] = (),
+  onlookers: Sequence[episode.Onlooker] = (),
 ) -> Rollout:
   """Runs a scenario with a team of one receiver.
 
   Args:
     scene: The scenario.
     receiver_name: One of `receivers.RECEIVERS`.
-    watchers: What else looks on; they cannot change what happens.
+    onlookers: What else looks on; they cannot change what happens.
 
   Raises:
     WaggleError: if the receiver is not known.
@@ -35,7 +35,7 @@ def run(
   team = observer_agent.Team(scene.observers, receiver_name, scene.agreement)
   environment = registry.environment(scene)
   try:
-    rollout = play(environment, team, watchers)
+    rollout = play(environment, team, onlookers)
     return dataclasses.replace(rollout, receiver=receiver_name)
   finally:
     environment.close()
@@ -45,7 +45,7 @@ def run(
 def play(
   environment: registry.composer.Environment,
   team: observer_agent.Team,
-  watchers: Sequence[episode.Watcher] = (),
+  onlookers: Sequence[episode.Onlooker] = (),
 ) -> Rollout:
   """Plays an episode in an environment, with a new team; closes nothing."""
   task, truth, drifts, contacts = environment.task, [], [], []
@@ -54,7 +54,7 @@ def play(
   tracer = traces_lib.Tracer(len(team.agents))
   timestep = environment.reset()
   physics = environment.physics  # Resetting may compile a new one.
-  seen = sight.Sight(physics, task.observers)
+  seen = true_places.TruePlaces(physics, task.observers)
   while True:
     truth.append(task.positions_m(physics))
     drifts.append(task.drifts_m())
@@ -68,8 +68,8 @@ def play(
     contacts += [(time_s, pair) for pair in task.contacts]
     action = team.step(timestep.observation)
     tracer.note(team)
-    for watch in watchers:
-      watch(environment, timestep, team)
+    for watch in onlookers:
+      watch(episode.Step(environment, timestep, team))
     if timestep.last():
       break
     timestep = environment.step(action)

@@ -50,8 +50,8 @@ def define() -> None:
 @contextlib.contextmanager
 def recorders(
   folder: pathlib.Path, scene: scenario.Scenario
-) -> Iterator[list[episode.Watcher]]:
-  """The watchers that the flags ask for; their files are complete at the end.
+) -> Iterator[list[episode.Onlooker]]:
+  """The onlookers that the flags ask for; their files are complete at the end.
 
   Args:
     folder: The run folder.
@@ -65,9 +65,9 @@ def recorders(
     if flags.FLAGS[name].present and not values['video']:
       raise layout.VideoError(f'`{name}` is about a video: add --video')
   with contextlib.ExitStack() as stack:
-    watchers: list[episode.Watcher] = []
+    onlookers: list[episode.Onlooker] = []
     if values['raw']:
-      watchers.append(stack.enter_context(capture.Recorder(folder)))
+      onlookers.append(stack.enter_context(capture.Recorder(folder)))
     if values['video']:
       # Imported here: what films draws with the simulator.
       from waggle_tasks.experiments.video import film
@@ -81,5 +81,5 @@ def recorders(
         scale=values['video_scale'],
         marks=values['video_marks'],
       )
-      watchers.append(stack.enter_context(shot))
-    yield watchers
+      onlookers.append(stack.enter_context(shot))
+    yield onlookers

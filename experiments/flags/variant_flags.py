@@ -1,6 +1,7 @@
 """Flags of launchers that run a suite again and again, moved or in parts."""
 
 from collections.abc import Mapping
+import dataclasses
 import pathlib
 from typing import Any
 
@@ -8,9 +9,10 @@ from absl import flags
 
 from waggle_tasks import suites
 from waggle_tasks.agents import receivers
-from waggle_tasks.experiments.flags import receiver_flag, workers_flag
+from waggle_tasks.experiments.flags import engine_flag, receiver_flag
 from waggle_tasks.experiments.pages import run_page
-from waggle_tasks.experiments.studies import variant_runner
+from waggle_tasks.experiments.record import provenance
+from waggle_tasks.experiments.studies import variants
 from waggle_tasks.protocol import checks
 
 # Flags defined here belong to the launcher that asks for them.
@@ -29,7 +31,7 @@ def define(suite: str, output: str) -> None:
   receiver_flag.define(None)
   flags.DEFINE_list('case', [], 'Only these cases, by name.')
   flags.DEFINE_list('variant', [], 'Only these variants, by name.')
-  workers_flag.define()
+  engine_flag.define()
   flags.DEFINE_string('output', output, 'Folder of the results.')
 
 
@@ -46,16 +48,19 @@ def receiver() -> str | None:
 
 
 def run(
-  command: str, variants: Mapping[str, variant_runner.Variant]
-) -> variant_runner.Results:
-  """Runs the variants that the flags ask for.
+  command: str, known: Mapping[str, variants.Variant]
+) -> variants.Results:
+  """Runs the variants that the flags ask for, one after the other.
+
+  Each is a suite of its own; ended at any moment, the same command goes on
+  where it was.
 
   Args:
     command: The launcher's name.
-    variants: All there are, by name.
+    known: All there are, by name.
 
   Returns:
-    By name, the rows of each one's results.jsonl.
+    By name, the rows of each one.
 
   Raises:
     WaggleError: if a flag names what does not exist, or the suite cannot run.
@@ -66,13 +71,28 @@ def run(
   for name in wanted:
     checks.choice('case', name, [c.name for c in cases], suites.SuiteError)
   for name in names:
-    checks.choice('variant', name, [*variants], suites.SuiteError)
+    checks.choice('variant', name, [*known], suites.SuiteError)
   asked = [f'--receiver={each}'] if (each := receiver()) is not None else []
-  return variant_runner.run(
-    {name: variants[name] for name in names or variants},
-    [c for c in cases if not wanted or c.name in wanted],
-    pathlib.Path(values['output']),
-    workers_flag.count(values['workers']),
-    [command, f'--suite={suite}', *asked],
-    run_page.leave,
-  )
+  engine, _ = engine_flag.engine()
+  # Imported here: help needs no simulator.
+  from waggle_tasks.experiments.studies import runner, suite_study
+
+  results = {}
+  for name in names or known:
+    variant = known[name]
+    print(f'{name}: {variant.label}', flush=True)
+    moved = [
+      dataclasses.replace(
+        case, scene=dataclasses.replace(case.scene, **variant.changes)
+      )
+      for case in cases
+      if not wanted or case.name in wanted
+    ]
+    line = provenance.command_line(
+      command, [f'--suite={suite}', *asked, f'--variant={name}']
+    )
+    results[name] = runner.run(
+      suite_study.Suite(moved, variant.receiver, run_page.leave),
+      pathlib.Path(values['output']) / name, engine, line,
+    )  # fmt: skip
+  return results

@@ -67,16 +67,22 @@ def render_once(
     return Rendering(error=f'the rendering process said: {said}')
 
 
-def mend(environ: Mapping[str, str], error: str) -> str:
+def mend(
+  environ: Mapping[str, str], error: str, platform: str = sys.platform
+) -> str:
   """Returns the shell line that most likely mends a failed rendering.
 
   Args:
     environ: The environment that the frame was rendered in.
     error: `Rendering.error`.
+    platform: `sys.platform`.
   """
   for name in _NAMED_VARIABLES:
     if name in error:
       return f'unset {name}'
+  if platform != 'linux':  # There is no EGL; GLFW draws on the screen.
+    named = environ.get('MUJOCO_GL') not in (None, 'glfw')
+    return 'unset MUJOCO_GL' if named else 'pip install --force-reinstall glfw'
   if environ.get('MUJOCO_GL') != 'egl':
     return 'export MUJOCO_GL=egl'
   for name in _DRIVER_VARIABLES:

@@ -91,6 +91,8 @@ def _is_dead(stream: TextIO) -> bool:
     descriptor = stream.fileno()
   except (OSError, ValueError):  # Kept in memory, or closed.
     return False
+  if not hasattr(select, 'poll'):  # Python hides it where it is broken.
+    return True
   poll = select.poll()
   poll.register(descriptor, select.POLLOUT)
   gone = select.POLLERR | select.POLLHUP

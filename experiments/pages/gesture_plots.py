@@ -40,7 +40,7 @@ def draw(
 def _figure(
   number: int,
   event: receiver.Event,
-  motion: traces_lib.Motion | None,
+  motion: traces_lib.TracedMotion | None,
   templates: views.Templates | None,
   told: description.Description,
 ) -> markup.Markup:
@@ -70,7 +70,7 @@ def _figure(
 
 def _plot(
   event: receiver.Event,
-  motion: traces_lib.Motion | None,
+  motion: traces_lib.TracedMotion | None,
   templates: views.Templates | None,
 ) -> markup.Markup:
   """The normalised track, over the best and the second template if any."""
@@ -140,7 +140,7 @@ def _axes(x: plot.Scale, y: plot.Scale) -> markup.Markup:
 
 def _scores(
   event: receiver.Event,
-  motion: traces_lib.Motion | None,
+  motion: traces_lib.TracedMotion | None,
   limits: config_lib.Recognition | None,
 ) -> markup.Markup | None:
   """Every score with its limit and whether it keeps it, where that is told."""

@@ -66,7 +66,7 @@ def time_scale(end_s: float) -> Scale:
   return Scale(0.0, end_s, LEFT, WIDTH - RIGHT)
 
 
-class Line(NamedTuple):
+class Curve(NamedTuple):
   """A curve of a panel: its values, its look, and its name in the legend."""
 
   values: np.ndarray
@@ -152,7 +152,7 @@ def panel(
   title: str,
   unit: str,
   times_s: np.ndarray,
-  lines: Sequence[Line],
+  lines: Sequence[Curve],
   scale: Scale,
   end_s: float,
   limits: Limits | None = None,

@@ -92,7 +92,7 @@ def _signals(each: flown.Flown) -> list[_Signal]:
 
 def _panel(signal: _Signal, run: archive.Run, last: bool) -> markup.Markup:
   looks = zip(signal.values.T, _LOOKS, signal.names, strict=False)
-  lines = [plot.Line(*each) for each in looks]
+  lines = [plot.Curve(*each) for each in looks]
   ends = signal.limits.values if signal.limits else ()
   reached = np.append(signal.values.ravel(), ends)
   low, high = min(reached.min(), 0.0), max(reached.max(), 1e-3)

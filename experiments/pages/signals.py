@@ -34,7 +34,7 @@ def draw(
 
   def panel(
     measure: description.Measure, height: float, low: float, high: float,
-    *lines: plot.Line, logarithmic: bool = False, last: bool = False,
+    *lines: plot.Curve, logarithmic: bool = False, last: bool = False,
   ) -> markup.Markup:  # fmt: skip
     scale = plot.Scale(low, high, _TOP + height, _TOP, logarithmic)
     limits = None
@@ -49,16 +49,16 @@ def draw(
     [
       panel(
         told.place, 130, near, far,
-        plot.Line(offset_px[:, 0], 'a', 'right'),
-        plot.Line(-offset_px[:, 1], 'b', 'up'),
+        plot.Curve(offset_px[:, 0], 'a', 'right'),
+        plot.Curve(-offset_px[:, 1], 'b', 'up'),
       ),
       panel(
-        told.speed, 110, _SLOWEST_PX_S, fastest, plot.Line(speed, 'a'),
+        told.speed, 110, _SLOWEST_PX_S, fastest, plot.Curve(speed, 'a'),
         logarithmic=True,
       ),
-      panel(told.support, 60, 0.0, most, plot.Line(trace.support, 'a')),
+      panel(told.support, 60, 0.0, most, plot.Curve(trace.support, 'a')),
       panel(
-        told.quality, 60, 0.0, 1.05, plot.Line(trace.quality, 'a'), last=True
+        told.quality, 60, 0.0, 1.05, plot.Curve(trace.quality, 'a'), last=True
       ),
     ]
   )  # fmt: skip

@@ -7,7 +7,7 @@ from waggle_tasks.experiments.machine import files
 from waggle_tasks.experiments.pages import sweep_page
 from waggle_tasks.experiments.record import archive
 from waggle_tasks.experiments.results import envelope, figures, sweep_tables
-from waggle_tasks.experiments.studies import sweep_results
+from waggle_tasks.experiments.studies import case_rows
 
 
 def write(folder: pathlib.Path, rows: Sequence[envelope.Row]) -> pathlib.Path:
@@ -22,8 +22,8 @@ def write(folder: pathlib.Path, rows: Sequence[envelope.Row]) -> pathlib.Path:
   """
   folder.mkdir(parents=True, exist_ok=True)
   text = sweep_tables.report(rows, None)
-  files.replace(folder / sweep_results.SUMMARY, f'{text}\n')
-  origin = folder / sweep_results.PROVENANCE
+  files.replace(folder / case_rows.SUMMARY, f'{text}\n')
+  origin = folder / case_rows.PROVENANCE
   known = archive.read_json(origin) if origin.exists() else None
   if figures.can_draw():
     figures.draw(envelope.panels(rows), folder)

@@ -56,7 +56,7 @@ def draw(
 def _head(rows: Sequence[envelope.Row], name: str) -> markup.Markup:
   got = envelope.count(rows)
   misled = got.wrong + got.unauthorised
-  receivers = ', '.join(sorted({row['receiver'] for row in rows}))
+  receivers = ', '.join(sorted({row.receiver for row in rows}))
   return tag(
     'header',
     tag('h1', name),
@@ -73,7 +73,7 @@ def _head(rows: Sequence[envelope.Row], name: str) -> markup.Markup:
     tag(
       'p',
       f'receiver {receivers}; {len(rows)} cases;'
-      f' {sum(row["simulated_s"] for row in rows):.0f} s simulated',
+      f' {sum(row.simulated_s for row in rows):.0f} s simulated',
       class_='faint',
     ),
     class_='failed' if misled else None,
@@ -115,7 +115,7 @@ def _failures(failures: Sequence[envelope.Failure]) -> markup.Markup | None:
       tag('div', tag('b', each.observer), f': {each.reason}')
       for each in members
     )
-    name = tag('b', row['case'])
+    name = tag('b', row.case)
     items.append(tag('li', name, *reasons, tag('pre', repeat(row))))
   more = len(failures) - len(shown)
   return tag(
@@ -129,8 +129,8 @@ def _failures(failures: Sequence[envelope.Failure]) -> markup.Markup | None:
 
 def repeat(row: envelope.Row) -> str:
   """The shell line that flies a case again, with its report."""
-  given = [f'--receiver={row["receiver"]}']
-  given += scenario_fields.flags(row['scenario'])
+  given = [f'--receiver={row.receiver}']
+  given += scenario_fields.flags(row.scenario)
   return provenance.command_line('broadcast', given)
 
 

@@ -27,7 +27,7 @@ class ArchiveError(errors.WaggleError):
 
 
 @dataclasses.dataclass(frozen=True)
-class Config:
+class Flown:
   """What was flown, as config.json has it.
 
   Attributes:
@@ -75,7 +75,7 @@ class Run:
   """
 
   folder: pathlib.Path
-  config: Config
+  config: Flown
   result: Result
   provenance: dict
   events: dict[str, tuple[episode.Event, ...]]
@@ -149,12 +149,10 @@ def read_json(path: pathlib.Path) -> dict[str, Any]:
     raise ArchiveError(f'{path} cannot be read: {error}') from None
   if not isinstance(value, dict):
     raise ArchiveError(f'{path} must hold a JSON object')
-  encoding.check_format(value, path)
-  value.pop('format', None)
-  return value
+  return encoding.unstamped(value, path)
 
 
-def read_rows(path: pathlib.Path, kind: type) -> list[dict[str, Any]]:
+def read_rows(path: pathlib.Path, kind: type[_Value]) -> list[_Value]:
   """Reads lines of results, as many as there are.
 
   Raises:
@@ -163,28 +161,31 @@ def read_rows(path: pathlib.Path, kind: type) -> list[dict[str, Any]]:
   """
   try:
     lines = path.read_text(encoding='utf-8').splitlines()
-    rows = [json.loads(line) for line in lines]
+    tables = [json.loads(line) for line in lines]
   except (OSError, ValueError) as error:
     raise ArchiveError(f'{path} cannot be read: {error}') from None
-  check_rows(rows, kind, path)
-  return rows
+  return rows(tables, kind, path)
 
 
-def check_rows(rows: Sequence[Any], kind: type, path: pathlib.Path) -> None:
-  """Refuses rows that could not be those of a dataclass.
+def rows(
+  tables: Sequence[Any], kind: type[_Value], path: pathlib.Path
+) -> list[_Value]:
+  """Makes rows of a file of the plain data of its lines.
 
   Raises:
     ArchiveError: naming the line and what is wrong with it.
     FormatError: if a newer program wrote one.
   """
-  for number, row in enumerate(rows, 1):
+  out = []
+  for number, table in enumerate(tables, 1):
     place = f'{path}, line {number},'
-    if isinstance(row, dict):
-      encoding.check_format(row, place)
-    _made(kind, row, place, 'row')
+    if isinstance(table, dict):
+      table = encoding.unstamped(table, place)
+    out.append(_made(kind, table, place, 'row'))
+  return out
 
 
-def read_config(path: pathlib.Path) -> Config:
+def read_config(path: pathlib.Path) -> Flown:
   """Reads what was flown in a run.
 
   Args:
@@ -207,7 +208,7 @@ def read_config(path: pathlib.Path) -> Config:
       name: value for name, value in scene.items()
       if name in names and isinstance(value, dict)
     }  # fmt: skip
-  return _made(Config, table, path)
+  return _made(Flown, table, path)
 
 
 def read_result(path: pathlib.Path) -> Result:
@@ -252,7 +253,6 @@ def read_events(
   Args:
     path: events.jsonl.
     names: The observers, also those without events.
-    units: The agreed fields of the payload.
 
   Raises:
     ArchiveError: naming the line that is damaged.

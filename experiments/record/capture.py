@@ -15,19 +15,14 @@ from collections.abc import Iterator
 import math
 import pathlib
 import struct
-import types
-from typing import TYPE_CHECKING, BinaryIO
+from typing import BinaryIO
 import zlib
 
 import numpy as np
 
 from waggle_tasks import errors
-from waggle_tasks.agents import observer_agent
+from waggle_tasks.experiments.record import episode
 from waggle_tasks.protocol import camera
-
-if TYPE_CHECKING:
-  from dm_control import composer
-  import dm_env
 
 FOLDER = 'raw'
 SUFFIX = '.capture'
@@ -63,12 +58,7 @@ class Writer:
   def __enter__(self) -> 'Writer':
     return self
 
-  def __exit__(
-    self,
-    kind: type[BaseException] | None,
-    error: BaseException | None,
-    trace: types.TracebackType | None,
-  ) -> None:
+  def __exit__(self, kind: object, error: object, trace: object) -> None:
     if error is None:
       self._put(_RECORD.pack(math.nan, 0, 0, 0, 0, self._images))
       self._put(_CRC.pack(self._crc))
@@ -205,7 +195,7 @@ def _window(data: bytes, shape: tuple[int, int, int]) -> np.ndarray | None:
 
 
 class Recorder:
-  """A watcher that captures every image that a receiver takes."""
+  """An onlooker that captures every image that a receiver takes."""
 
   def __init__(self, folder: pathlib.Path) -> None:
     """Makes the recorder, a context manager.
@@ -219,29 +209,19 @@ class Recorder:
   def __enter__(self) -> 'Recorder':
     return self
 
-  def __exit__(
-    self,
-    kind: type[BaseException] | None,
-    error: BaseException | None,
-    trace: types.TracebackType | None,
-  ) -> None:
+  def __exit__(self, kind: object, error: object, trace: object) -> None:
     for writer in self._writers:
       writer.__exit__(kind, error, trace)
 
-  def __call__(
-    self,
-    environment: 'composer.Environment',
-    timestep: 'dm_env.TimeStep',
-    team: observer_agent.Team,
-  ) -> None:
+  def __call__(self, step: episode.Step) -> None:
     """Captures the images of this frame."""
-    if timestep.first():
+    if step.timestep.first():
       self._folder.mkdir()
-      for each in environment.task.observers:
+      for each in step.environment.task.observers:
         name = each.mjcf_model.model + SUFFIX
         self._writers.append(Writer(self._folder / name))
     for writer, observation, agent in zip(
-      self._writers, timestep.observation, team.agents, strict=True
+      self._writers, step.timestep.observation, step.team.agents, strict=True
     ):
       time_s = float(observation['time_s'])
       # Navigating, it reads none; an image that comes again, it passes over.

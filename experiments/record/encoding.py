@@ -29,6 +29,12 @@ def stamped(value: object) -> dict[str, Any]:
   return {'format': FORMAT, **plain.to_plain(value)}
 
 
+def unstamped(table: Mapping[str, Any], place: object) -> dict[str, Any]:
+  """Plain data without their format; see `check_format`."""
+  check_format(table, place)
+  return {name: value for name, value in table.items() if name != 'format'}
+
+
 def check_format(table: Mapping[str, Any], place: object) -> None:
   """Refuses what this program does not know how to read.
 

@@ -1,7 +1,8 @@
 """What happened in an episode, as values that need no simulator."""
 
+from collections.abc import Callable
 import dataclasses
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -63,15 +64,20 @@ class Rollout:
     return self.steady_m(name) + (0.0 if flown is None else flown.error_m)
 
 
-class Watcher(Protocol):
-  """What looks on: it may look at everything and change nothing."""
+@dataclasses.dataclass(frozen=True, eq=False)
+class Step:
+  """A step of an episode, after the team has acted on it.
 
-  def __call__(
-    self,
-    environment: 'composer.Environment',
-    timestep: 'dm_env.TimeStep',
-    team: observer_agent.Team,
-    /,
-  ) -> None:
-    """Sees a time step, and the team after it has acted on it."""
-    ...
+  Attributes:
+    environment: Where it happens.
+    timestep: What came of it.
+    team: Who acts.
+  """
+
+  environment: 'composer.Environment'
+  timestep: 'dm_env.TimeStep'
+  team: observer_agent.Team
+
+
+# What looks on: it may look at everything and change nothing.
+Onlooker = Callable[[Step], None]

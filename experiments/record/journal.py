@@ -6,6 +6,7 @@ or touched since, is told from a whole one and passed over.
 
 from collections.abc import Iterator
 import contextlib
+import fcntl
 import hashlib
 import json
 import os
@@ -40,10 +41,18 @@ class Journal:
     try:
       while data:
         data = data[os.write(self._descriptor, data) :]
-      os.fsync(self._descriptor)
+      _settle(self._descriptor)
     except OSError:
       os.ftruncate(self._descriptor, size)
       raise
+
+
+def _settle(descriptor: int) -> None:
+  """Waits until what was written is on the disk."""
+  os.fsync(descriptor)
+  if hasattr(fcntl, 'F_FULLFSYNC'):  # On macOS, fsync leaves it in the drive.
+    with contextlib.suppress(OSError):  # Not every file system has it.
+      fcntl.fcntl(descriptor, fcntl.F_FULLFSYNC)
 
 
 @contextlib.contextmanager

@@ -18,7 +18,7 @@ class TraceError(errors.WaggleError):
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
-class Motion:
+class TracedMotion:
   """One motion as a receiver cut it out of its track.
 
   Attributes:
@@ -56,11 +56,11 @@ class Trace:
   support: np.ndarray
   quality: np.ndarray
   valid: np.ndarray
-  motions: tuple[Motion, ...] = ()
+  motions: tuple[TracedMotion, ...] = ()
 
   @classmethod
   def of(
-    cls, tracks: Sequence[klt.Track], motions: Sequence[Motion]
+    cls, tracks: Sequence[klt.Track], motions: Sequence[TracedMotion]
   ) -> 'Trace':
     """The trace of a receiver's tracks, one for each image."""
     rows = [
@@ -84,7 +84,7 @@ class Tracer:
       count: How many agents the team has.
     """
     self._tracks: list[list[klt.Track]] = [[] for _ in range(count)]
-    self._motions: list[list[Motion]] = [[] for _ in range(count)]
+    self._motions: list[list[TracedMotion]] = [[] for _ in range(count)]
     self._noted_s = [-math.inf] * count
 
   def note(self, team: observer_agent.Team) -> None:
@@ -106,8 +106,8 @@ class Tracer:
     return tuple(map(Trace.of, self._tracks, self._motions))
 
 
-def _motion(confirmed_s: float, segment: segmenter.Segment) -> Motion:
-  return Motion(
+def _motion(confirmed_s: float, segment: segmenter.Segment) -> TracedMotion:
+  return TracedMotion(
     confirmed_s, segment.begin_s, segment.end_s, segment.path_px,
     segment.width_px,
   )  # fmt: skip
@@ -153,7 +153,7 @@ def _read(arrays: Mapping[str, np.ndarray], name: str) -> Trace:
   ends = np.cumsum(arrays[f'{name}.motion_lengths'])
   paths_px = np.split(arrays[f'{name}.motion_px'], ends)[:-1]
   motions = [
-    Motion(
+    TracedMotion(
       float(confirmed_s), float(begin_s), float(end_s), path_px,
       None if np.isnan(width_px) else float(width_px),
     )

@@ -6,8 +6,8 @@ EARLY = 'premature motion'  # How the failure of who left its place begins.
 
 
 @dataclasses.dataclass(frozen=True)
-class Outcome:
-  """One observer's episode.
+class Account:
+  """One observer's episode, as files tell it.
 
   Attributes:
     observer: Its name.
@@ -36,6 +36,10 @@ class Outcome:
   failures: tuple[str, ...] = ()
   diagnosis: str = ''
   estimate_error_m: float | None = None
+
+
+class Outcome(Account):
+  """One observer's episode, and what follows from it."""
 
   @property
   def correct(self) -> bool:

@@ -21,9 +21,7 @@ Page = Callable[[pathlib.Path], object]  # Makes the page of a run folder.
 def config(scene: scenario.Scenario, receiver_name: str) -> dict[str, Any]:
   """A run's configuration: every field of its scenario, and its receiver."""
   fields = plain.to_plain(scene)
-  return encoding.stamped(
-    archive.Config(receiver_name, fields, scene.agreement)
-  )
+  return encoding.stamped(archive.Flown(receiver_name, fields, scene.agreement))
 
 
 def event_lines(rollout: episode.Rollout) -> Iterator[str]:

@@ -5,9 +5,9 @@ from collections.abc import Mapping, Sequence
 import dataclasses
 from typing import Any
 
-from waggle_tasks.experiments.studies import sweep_cases
+from waggle_tasks.experiments.studies import case_rows, sweep_cases
 
-Row = Mapping[str, Any]
+Row = case_rows.SweepRow
 
 _DOWN, _ACROSS = ('distance_m',), ('bearing_deg', 'half_span_deg')
 
@@ -77,34 +77,38 @@ class Panel:
 
 def value(row: Row, factor: str | None) -> object:
   """A factor's value in a row; None for no factor."""
-  if factor in (None, 'receiver'):
-    return factor and row['receiver']
-  return row['scenario'][factor]
+  if factor is None or factor == 'receiver':
+    return factor and row.receiver
+  return row.scenario[factor]
 
 
 def factors(rows: Sequence[Row]) -> list[str]:
   """What differs between rows, beside seeds and payloads that were drawn."""
   drawn = {'seed'}
-  if not all('payload' in row['cell'] for row in rows):
+  if not all('payload' in row.cell for row in rows):
     drawn.add('payload')
-  names = ['receiver', *(n for n in rows[0]['scenario'] if n not in drawn)]
+  names = ['receiver', *(n for n in rows[0].scenario if n not in drawn)]
   return [name for name in names if len(_levels(rows, name)) > 1]
 
 
 def count(rows: Sequence[Row]) -> Count:
   """Counts all exposures of some rows."""
-  outcomes = [outcome for row in rows for outcome in row['outcomes']]
-  kinds = ('right', 'wrong', 'unauthorised')
-  return Count(len(outcomes), *(sum(o[k] for o in outcomes) for k in kinds))
+  outcomes = [outcome for row in rows for outcome in row.outcomes]
+  return Count(
+    len(outcomes),
+    sum(each.right for each in outcomes),
+    sum(each.wrong for each in outcomes),
+    sum(each.unauthorised for each in outcomes),
+  )
 
 
 def failures(rows: Sequence[Row]) -> list[Failure]:
   """Every exposure that was not right or moved without a right message."""
   return [
-    Failure(row, outcome['observer'], '; '.join(outcome['failures']))
+    Failure(row, outcome.observer, '; '.join(outcome.failures))
     for row in rows
-    for outcome in row['outcomes']
-    if not outcome['right'] or outcome['unauthorised']
+    for outcome in row.outcomes
+    if not outcome.right or outcome.unauthorised
   ]
 
 
@@ -113,9 +117,9 @@ def flaws_of_right(rows: Sequence[Row]) -> dict[str, int]:
   stages = [
     stage
     for row in rows
-    for outcome in row['outcomes']
-    if outcome['right'] and not outcome['unauthorised']
-    for stage in dict.fromkeys(outcome['stages'])
+    for outcome in row.outcomes
+    if outcome.right and not outcome.unauthorised
+    for stage in dict.fromkeys(outcome.stages)
   ]
   return dict(collections.Counter(stages))
 

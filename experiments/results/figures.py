@@ -13,7 +13,7 @@ import numpy as np
 from waggle_tasks import errors
 from waggle_tasks.experiments.machine import files
 from waggle_tasks.experiments.results import envelope, heat, palette
-from waggle_tasks.experiments.studies import sweep_results
+from waggle_tasks.experiments.studies import case_rows
 
 if TYPE_CHECKING:
   from matplotlib import axes, image
@@ -87,9 +87,7 @@ def draw(
     figure.savefig(painted, format='png', dpi=_DPI)
   return [
     files.replace(folder / name, data.getvalue())
-    for name, data in zip(
-      sweep_results.FIGURES, (vectors, painted), strict=True
-    )
+    for name, data in zip(case_rows.FIGURES, (vectors, painted), strict=True)
   ]
 
 

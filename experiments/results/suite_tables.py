@@ -1,14 +1,13 @@
 """A suite's results as tables for people, beside what the paper published."""
 
-from collections.abc import Mapping, Sequence
-import itertools
-from typing import Any
+from collections.abc import Sequence
 
 from waggle_tasks import errors
 from waggle_tasks.experiments.machine import table
 from waggle_tasks.experiments.results import intervals
+from waggle_tasks.experiments.studies import case_rows
 
-Row = Mapping[str, Any]
+Row = case_rows.SuiteRow
 
 CAVEAT = (
   'A deterministic matrix is descriptive: its intervals say how much so few'
@@ -24,8 +23,7 @@ class CompareError(errors.WaggleError):
 def report(rows: Sequence[Row]) -> str:
   """Every table of a suite: its groups one by one, never pooled."""
   parts = []
-  for group, members in itertools.groupby(rows, key=lambda row: row['group']):
-    cases = list(members)
+  for group, cases in case_rows.by_group(rows).items():
     parts.append(_group(group, cases))
     if failed := _failures(cases):
       parts.append(failed)
@@ -38,57 +36,65 @@ def _group(group: str, rows: Sequence[Row]) -> str:
   )  # fmt: skip
   cells = []
   for row in rows:
-    published = row['published']
-    correct, verdict = _counts(row), _verdict(row['passed'])
-    theirs = ('-', '-')
-    if published:
-      theirs = (
-        f'{published["correct"]}/{row["observers"]}',
-        _verdict(published['passed']),
-      )
-    same = not published or (correct, verdict) == theirs
+    theirs = published(row) or ('-', '-')
+    same = row.published is None or row.as_published
     cells.append(
       (
-        row['label'], str(row['observers']), correct, theirs[0], verdict,
-        theirs[1], '' if same else 'differs',
+        row.label, str(row.observers), _counts(row), theirs[0],
+        verdict(row.passed), theirs[1], '' if same else 'differs',
       )
     )  # fmt: skip
   return '\n'.join([table.render(header, cells), *totals(rows)])
 
 
+def published(row: Row) -> tuple[str, str] | None:
+  """What the paper gives for a case, as cells, such as '3/3' and 'Pass'."""
+  if row.published is None:
+    return None
+  theirs = row.published
+  return f'{theirs.correct}/{row.observers}', verdict(theirs.passed)
+
+
+def verdict(passed: bool) -> str:
+  """How a group did, in a word."""
+  return 'Pass' if passed else 'Fail'
+
+
 def totals(rows: Sequence[Row]) -> list[str]:
   """The sums of a group and their intervals."""
-  correct = [row['correct'] for row in rows]
-  exposures = [row['observers'] for row in rows]
-  passed = sum(row['passed'] for row in rows)
+  got = case_rows.Tally.of(rows)
+  theirs = [row.published for row in rows if row.published is not None]
+  whole = len(theirs) == len(rows)
+  exact = intervals.clopper_pearson(got.passed, got.broadcasts)
   lines = [
-    _total('broadcasts passed', passed, len(rows), 'passed', rows)
-    + _interval('Clopper-Pearson', intervals.clopper_pearson(passed, len(rows)))
-  ]
-  if all(row['expecting'] == row['observers'] for row in rows):
-    lines.insert(
-      0,
-      _total('messages correct', sum(correct), sum(exposures), 'correct', rows)
-      + _of_messages(correct, exposures),
+    _total(
+      'broadcasts passed', got.passed, got.broadcasts,
+      sum(each.passed for each in theirs) if whole else None,
     )
+    + _interval('Clopper-Pearson', exact)
+  ]  # fmt: skip
+  if all(row.expecting == row.observers for row in rows):
+    total = _total(
+      'messages correct', got.correct, got.observers,
+      sum(each.correct for each in theirs) if whole else None,
+    )  # fmt: skip
+    lines.insert(0, total + _of_messages(rows))
   return lines
 
 
-def _total(
-  what: str, count: int, of: int, key: str, rows: Sequence[Row]
-) -> str:
+def _total(what: str, count: int, of: int, theirs: int | None) -> str:
   line = f'{what}: {count}/{of} ({count / of:.2%})'
-  if all(row['published'] for row in rows):
-    line += f', paper {sum(row["published"][key] for row in rows)}/{of}'
-  return line
+  return line if theirs is None else f'{line}, paper {theirs}/{of}'
 
 
-def _of_messages(correct: Sequence[int], exposures: Sequence[int]) -> str:
+def _of_messages(rows: Sequence[Row]) -> str:
   """The interval of a share of messages, which broadcasts have in common.
 
   Broadcasts that are all alike have no spread to draw from. Where all or none
   of their messages are correct, the broadcasts themselves are counted.
   """
+  correct = [row.correct for row in rows]
+  exposures = [row.observers for row in rows]
   drawn = intervals.bootstrap_by_broadcast(correct, exposures)
   if drawn[0] < drawn[1]:
     return _interval('bootstrap by broadcast', drawn)
@@ -105,10 +111,10 @@ def _interval(method: str, interval: tuple[float, float]) -> str:
 
 def _failures(rows: Sequence[Row]) -> str:
   lines = [
-    f'  {row["case"]}, {outcome["observer"]}: {failure}'
+    f'  {row.case}, {outcome.observer}: {failure}'
     for row in rows
-    for outcome in row['outcomes']
-    for failure in outcome['failures']
+    for outcome in row.outcomes
+    for failure in outcome.failures
   ]
   return '\n'.join(['failures:', *lines]) if lines else ''
 
@@ -124,37 +130,37 @@ def compare(a: Sequence[Row], b: Sequence[Row], names: tuple[str, str]) -> str:
   Raises:
     CompareError: if they have no case in common, or cases that differ.
   """
-  others = {row['case']: row for row in b}
-  pairs = [(row, others[row['case']]) for row in a if row['case'] in others]
+  others = {row.case: row for row in b}
+  pairs = [(row, others[row.case]) for row in a if row.case in others]
   if not pairs:
     raise CompareError('`compare` must name folders with a case in common')
   for one, two in pairs:
-    if one['observers'] != two['observers']:
+    if one.observers != two.observers:
       raise CompareError(
-        f'`compare` must name folders of the same cases: {one["case"]} has'
-        f' {one["observers"]} and {two["observers"]} observers'
+        f'`compare` must name folders of the same cases: {one.case} has'
+        f' {one.observers} and {two.observers} observers'
       )
   cells = [
     (
-      one['label'], str(one['observers']), _counts(one), _counts(two),
-      _verdict(one['passed']), _verdict(two['passed']),
+      one.label, str(one.observers), _counts(one), _counts(two),
+      verdict(one.passed), verdict(two.passed),
     )
     for one, two in pairs
   ]  # fmt: skip
   header = ('configuration', 'N', *names, *names)
   lines = [table.render(header, cells), '']
-  for group, members in itertools.groupby(pairs, lambda p: p[0]['group']):
-    lines += _paired(group, list(members))
+  for group, members in case_rows.by_group(one for one, _ in pairs).items():
+    lines += _paired(group, [(one, others[one.case]) for one in members])
   return '\n'.join(lines)
 
 
 def _paired(group: str, pairs: Sequence[tuple[Row, Row]]) -> list[str]:
   """McNemar's test over a group's broadcasts and, described, its receivers."""
-  broadcasts = [(one['passed'], two['passed']) for one, two in pairs]
+  broadcasts = [(one.passed, two.passed) for one, two in pairs]
   receivers = [
-    (not x['failures'], not y['failures'])
+    (not x.failures, not y.failures)
     for one, two in pairs
-    for x, y in zip(one['outcomes'], two['outcomes'], strict=True)
+    for x, y in zip(one.outcomes, two.outcomes, strict=True)
   ]
   lines = []
   for what, outcomes in (('broadcasts', broadcasts), ('receivers', receivers)):
@@ -169,8 +175,4 @@ def _paired(group: str, pairs: Sequence[tuple[Row, Row]]) -> list[str]:
 
 
 def _counts(row: Row) -> str:
-  return f'{row["correct"]}/{row["observers"]}'
-
-
-def _verdict(passed: bool) -> str:
-  return 'Pass' if passed else 'Fail'
+  return f'{row.correct}/{row.observers}'

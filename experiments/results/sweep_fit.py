@@ -25,17 +25,17 @@ def lines(panel: envelope.Panel) -> list[str]:
   sent = [
     outcome
     for row in panel.rows
-    for outcome in row['outcomes']
-    if outcome['expected'] is not None
+    for outcome in row.outcomes
+    if outcome.expected is not None
   ]
   values = {
-    'angle': np.array([abs(o['true_angle_deg']) for o in sent]),
-    'distance': np.array([o['true_distance_m'] for o in sent]),
+    'angle': np.array([abs(o.true_angle_deg) for o in sent]),
+    'distance': np.array([o.true_distance_m for o in sent]),
   }
   varying = {n: v for n, v in values.items() if len(np.unique(v)) > 1}
   if not varying:
     return []
-  right = np.array([outcome['right'] for outcome in sent])
+  right = np.array([outcome.right for outcome in sent])
   head = f'{panel.title}: ' if panel.title else ''
   if right.all():
     return [

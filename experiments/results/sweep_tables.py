@@ -37,7 +37,7 @@ def report(rows: Sequence[envelope.Row], most: int | None) -> str:
 
 def _failures(rows: Sequence[envelope.Row]) -> list[str]:
   lines = [
-    f'  {each.row["case"]}, {each.observer}: {each.reason}'
+    f'  {each.row.case}, {each.observer}: {each.reason}'
     for each in envelope.failures(rows)
   ]
   return ['failures:', *lines] if lines else []
@@ -110,7 +110,7 @@ def totals(rows: Sequence[envelope.Row]) -> list[str]:
     listed = ', '.join(f'{name} {count}' for name, count in stages.items())
     lines.append(f'checks failed although reading was right: {listed}')
   # Two sweeps may hold the same broadcast: it counts once.
-  told = {json.dumps(row['scenario'], sort_keys=True) for row in rows}
+  told = {json.dumps(row.scenario, sort_keys=True) for row in rows}
   if len(told) < n:
     lines.append(
       f'The {n} exposures are those of {len(told)} broadcasts; observers of'

@@ -4,16 +4,12 @@ The paper has no ablations and asks for those of null separators and of the
 final confirmation (section 'Limitations and next simulation experiments').
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 import dataclasses
-from typing import Any
 
 from waggle_tasks.agents import receivers, settings
 from waggle_tasks.experiments.machine import table
-from waggle_tasks.experiments.record import verdicts
-from waggle_tasks.experiments.studies import variant_runner
-
-Row = Mapping[str, Any]
+from waggle_tasks.experiments.studies import case_rows, variants
 
 LEGEND = (
   'messages: read as sent in the standard suite; groups: its broadcasts that'
@@ -26,7 +22,7 @@ LEGEND = (
 
 
 @dataclasses.dataclass(frozen=True)
-class Ablation(variant_runner.Variant):
+class Ablation(variants.Variant):
   """A receiver and what it lacks.
 
   Attributes:
@@ -74,34 +70,8 @@ def of(receiver: str) -> dict[str, Ablation]:
   }
 
 
-@dataclasses.dataclass(frozen=True)
-class _Counts:
-  """What one receiver did in all cases.
-
-  Attributes:
-    correct: Messages read as sent.
-    wrong: Messages read that were not sent.
-    moved: Observers that left their place without the message sent to them.
-  """
-
-  correct: int
-  wrong: int
-  moved: int
-
-  @classmethod
-  def of(cls, rows: Sequence[Row]) -> '_Counts':
-    outcomes = [
-      verdicts.Outcome(**fields) for row in rows for fields in row['outcomes']
-    ]
-    return cls(
-      sum(row['correct'] for row in rows),
-      sum(outcome.wrong for outcome in outcomes),
-      sum(outcome.unauthorised for outcome in outcomes),
-    )
-
-
 def report(
-  results: variant_runner.Results, known: Mapping[str, Ablation] = ABLATIONS
+  results: variants.Results, known: Mapping[str, Ablation] = ABLATIONS
 ) -> str:
   """Puts what was run into a table, one line each.
 
@@ -113,19 +83,24 @@ def report(
     'receiver', 'lacks', 'messages', 'groups', 'supplemental', 'controls',
     'wrong', 'moved', 'buys', 'costs',
   )  # fmt: skip
-  counts = {name: _Counts.of(rows) for name, rows in results.items()}
+  tallies = {n: case_rows.Tally.of(rows) for n, rows in results.items()}
   lines = []
   for name, rows in results.items():
-    ablation, own = known[name], counts[name]
-    full = counts.get(ablation.full)
+    ablation, own = known[name], tallies[name]
+    full = tallies.get(ablation.full)
+    of_group = {
+      group: case_rows.Tally.of(members)
+      for group, members in case_rows.by_group(rows).items()
+    }
+    standard, more = of_group.get('standard'), of_group.get('supplemental')
     lines.append(
       (
         ablation.receiver,
         ablation.label,
-        _share(rows, 'standard', 'correct', 'observers'),
-        _share(rows, 'standard', 'passed'),
-        _share(rows, 'supplemental', 'correct', 'observers'),
-        _share(rows, 'controls', 'passed'),
+        standard.messages if standard else '-',
+        standard.groups if standard else '-',
+        more.messages if more else '-',
+        of_group['controls'].groups if 'controls' in of_group else '-',
         str(own.wrong),
         str(own.moved),
         f'{full.correct - own.correct:+d}' if full else '-',
@@ -133,14 +108,3 @@ def report(
       )
     )
   return f'{table.render(header, lines)}\n\n{LEGEND}'
-
-
-def _share(
-  rows: Sequence[Row], group: str, count: str, of: str | None = None
-) -> str:
-  """Such as '44/53', of a group's cases; a dash when none of them ran."""
-  members = [row for row in rows if row['group'] == group]
-  if not members:
-    return '-'
-  total = sum(row[of] for row in members) if of else len(members)
-  return f'{sum(row[count] for row in members)}/{total}'

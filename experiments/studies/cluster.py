@@ -4,9 +4,10 @@ A worker of the cluster must have the same versions and the same sources. It
 works on one job at a time: several would share its GL.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Generator, Iterator, Sequence
 from concurrent import futures as futures_lib
 import contextlib
+import dataclasses
 import functools
 import importlib.util
 import logging
@@ -14,6 +15,7 @@ import pathlib
 import queue
 import re
 import socket
+import tempfile
 import threading
 import time
 from typing import TYPE_CHECKING
@@ -32,6 +34,7 @@ _POLL_S = 0.5
 _LOOK_S = 10.0  # How often to look whether anybody works.
 _WORKERS_S = 60.0  # Clusters that grow on demand take a while.
 _TURN = threading.Lock()
+_Result = tuple[object, dict[str, bytes]]  # See `pool.Done`.
 
 
 class ClusterError(errors.WaggleError):
@@ -81,7 +84,7 @@ def _names_file(scheduler: str) -> bool:
   return scheduler.endswith('.json') or pathlib.Path(scheduler).exists()
 
 
-def run(jobs: Sequence[pool.Job], place: str) -> Iterator[pool.Done]:
+def run(jobs: Sequence[pool.Job], place: str) -> Generator[pool.Done]:
   """Runs jobs on a cluster and yields those that are done, as `pool.run`.
 
   Args:
@@ -140,7 +143,7 @@ def _run(
   for _ in futures:
     future = _next(news, place)
     job = named[str(future.key)]
-    yield pool.Done(job, _result(future, job))
+    yield pool.Done(job, *_result(future, job))
     future.release()
 
 
@@ -169,7 +172,7 @@ def _gone(place: str, reason: str) -> ClusterError:
   )
 
 
-def _result(future: 'distributed.Future', job: pool.Job) -> object:
+def _result(future: 'distributed.Future', job: pool.Job) -> _Result:
   import distributed
 
   if future.cancelled():  # With the connection to the scheduler.
@@ -185,7 +188,7 @@ def _result(future: 'distributed.Future', job: pool.Job) -> object:
   return future.result(_WORKERS_S)
 
 
-def _work(job: pool.Job, theirs: tuple[str, dict[str, str]]) -> object:
+def _work(job: pool.Job, theirs: tuple[str, dict[str, str]]) -> _Result:
   """Does a job in a worker of the cluster, and nothing else meanwhile."""
   digest, versions = _origin()
   if digest != theirs[0]:
@@ -209,7 +212,18 @@ def _work(job: pool.Job, theirs: tuple[str, dict[str, str]]) -> object:
       )
   with _TURN:
     pool.share_cores()
-    return job.work(lambda amount: None, *job.arguments)
+    return _done(job)
+
+
+def _done(job: pool.Job) -> _Result:
+  """What a job returns, and the files that it leaves in a folder of its own."""
+  if job.draft is None:
+    return job.do(lambda amount: None), {}
+  with tempfile.TemporaryDirectory() as home:
+    draft = pathlib.Path(home, job.draft.name)
+    value = dataclasses.replace(job, draft=draft).do(lambda amount: None)
+    files = draft.iterdir() if draft.exists() else ()
+    return value, {path.name: path.read_bytes() for path in files}
 
 
 @functools.cache

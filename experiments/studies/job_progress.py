@@ -1,36 +1,25 @@
 """How far jobs are: what a job tells, and the bar that shows it."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING
 
 import tqdm
 
-from waggle_tasks.agents import observer_agent
 from waggle_tasks.experiments.record import episode
 from waggle_tasks.experiments.studies import pool
 from waggle_tasks.protocol import agreement
-
-if TYPE_CHECKING:
-  from dm_control import composer
-  import dm_env
 
 _FORM = '{desc}|{bar}| {n:.0f}/{total:.0f} s simulated [{elapsed} <'
 _REPORT_S = 2.0  # How often an episode says that it is alive.
 
 
-def reporter(report: Callable[[float], None]) -> episode.Watcher:
+def reporter(report: Callable[[float], None]) -> episode.Onlooker:
   """What watches an episode and reports how many seconds are done."""
   due_s = 0.0
 
-  def watch(
-    environment: 'composer.Environment',
-    timestep: 'dm_env.TimeStep',
-    team: observer_agent.Team,
-  ) -> None:
-    del team
+  def watch(step: episode.Step) -> None:
     nonlocal due_s
-    time_s = environment.physics.time()
-    if timestep.last() or time_s >= due_s:
+    time_s = step.environment.physics.time()
+    if step.timestep.last() or time_s >= due_s:
       due_s = time_s + _REPORT_S
       report(time_s)
 
@@ -62,7 +51,7 @@ def seconds_bar(duration_s: float, **look: object) -> tqdm.tqdm:
 
 
 def shown(
-  news: Iterable[pool.Progress | pool.Done],
+  news: Iterable[pool.Advance | pool.Done],
   lengths_s: Mapping[str, float],
   describe: Callable[[int, Sequence[str]], str],
 ) -> Iterator[pool.Done]:
@@ -84,7 +73,7 @@ def shown(
   ) as bar:
     for each in news:
       name, before = each.job.name, flown.get(each.job.name, 0)
-      if isinstance(each, pool.Progress):
+      if isinstance(each, pool.Advance):
         flown[name] = min(ticks(each.amount), lengths[name])
         active[name] = True
       else:

@@ -5,13 +5,14 @@ does one job at a time and says from time to time that it is alive. One that
 dies, or falls silent, is replaced, and its job is tried once more.
 """
 
-from collections.abc import Callable, Generator, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 import contextlib
 import dataclasses
 import multiprocessing
 from multiprocessing import connection
 from multiprocessing import process as process_lib
 import os
+import pathlib
 import signal
 import time
 import traceback
@@ -50,16 +51,23 @@ class Job:
     arguments: For `work`; a function to report progress with comes first.
     modules: Names of modules from outside of this project that it uses, and
       the SHA-256 of each: who does it elsewhere must have the same.
+    draft: A folder that its work leaves, which comes last; None for no folder.
   """
 
   name: str
   work: Callable
   arguments: tuple
   modules: tuple[tuple[str, str], ...] = ()
+  draft: pathlib.Path | None = None
+
+  def do(self, report: Callable[[float], None]) -> object:
+    """Does it, and returns what its work returned."""
+    folder = () if self.draft is None else (self.draft,)
+    return self.work(report, *self.arguments, *folder)
 
 
 @dataclasses.dataclass(frozen=True)
-class Progress:
+class Advance:
   """How far a job is; `amount` is what its work reported."""
 
   job: Job
@@ -68,10 +76,21 @@ class Progress:
 
 @dataclasses.dataclass(frozen=True)
 class Done:
-  """A finished job and what its work returned."""
+  """A finished job.
+
+  Attributes:
+    job: The job.
+    value: What its work returned.
+    files: What it left in the folder of its draft, where that is elsewhere.
+  """
 
   job: Job
   value: Any
+  files: Mapping[str, bytes] = dataclasses.field(default_factory=dict)
+
+
+# Begins jobs in their order and tells what becomes of them.
+Engine = Callable[[Sequence[Job]], Generator[Advance | Done]]
 
 
 @dataclasses.dataclass(eq=False)
@@ -86,7 +105,7 @@ class _Worker:
 
 def run(
   jobs: Sequence[Job], workers: int, silence_s: float = SILENCE_S
-) -> Generator[Progress | Done]:
+) -> Generator[Advance | Done]:
   """Runs jobs and yields what happens, in the order in which it happens.
 
   Args:
@@ -152,7 +171,7 @@ def _give(worker: _Worker, job: Job) -> None:
     worker.pipe.send(job)
 
 
-def _hear(worker: _Worker, job: Job) -> Iterator[Progress | Done]:
+def _hear(worker: _Worker, job: Job) -> Iterator[Advance | Done]:
   kind, value = worker.pipe.recv()
   worker.heard_s = time.monotonic()
   if kind == 'failed':
@@ -161,7 +180,7 @@ def _hear(worker: _Worker, job: Job) -> Iterator[Progress | Done]:
     worker.job = None
     yield Done(job, value)
   else:
-    yield Progress(job, value)
+    yield Advance(job, value)
 
 
 def _retry(
@@ -204,7 +223,7 @@ def _serve(pipe: connection.Connection) -> None:
     except EOFError:
       return
     try:
-      value = job.work(lambda n: pipe.send(('progress', n)), *job.arguments)
+      value = job.do(lambda n: pipe.send(('progress', n)))
       answer = ('done', value)
     except BrokenPipeError:
       return

@@ -5,9 +5,8 @@ import hashlib
 import json
 import pathlib
 import shutil
-from typing import Any
 
-from waggle_tasks import plain, suites
+from waggle_tasks import suites
 from waggle_tasks.experiments.episodes import evaluator, outside
 from waggle_tasks.experiments.episodes import rollout as rollout_lib
 from waggle_tasks.experiments.machine import files
@@ -17,7 +16,7 @@ from waggle_tasks.experiments.record import (
   provenance,
   writer,
 )
-from waggle_tasks.experiments.studies import job_progress, suite_results
+from waggle_tasks.experiments.studies import case_rows, job_progress
 
 SEAL = 'seal.json'
 
@@ -28,8 +27,8 @@ def fly(
   receiver_name: str,
   identity_: str,
   command: str,
-  draft: pathlib.Path,
   page: writer.Page,
+  draft: pathlib.Path,
 ) -> str | None:
   """Runs a case and leaves its sealed run folder; called in a worker.
 
@@ -39,8 +38,8 @@ def fly(
     receiver_name: The receiver.
     identity_: Its identity.
     command: The shell line that runs it again.
-    draft: The folder to leave; replaced when it exists.
     page: Makes the folder's page, which is no part of what is sealed.
+    draft: The folder to leave; replaced when it exists.
 
   Returns:
     Why it could not be written, which another try would not change; None when
@@ -48,11 +47,11 @@ def fly(
   """
   foreign = outside.paths(receiver_name, [case.scene])
   start = provenance.Start.now(command, foreign)
-  watchers = [job_progress.reporter(report)]
+  onlookers = [job_progress.reporter(report)]
   try:
     shutil.rmtree(draft, ignore_errors=True)
     draft.mkdir(parents=True)
-    rollout = rollout_lib.run(case.scene, receiver_name, watchers)
+    rollout = rollout_lib.run(case.scene, receiver_name, onlookers)
     verdict = evaluator.evaluate(case.scene, rollout)
     writer.write_run(
       draft,
@@ -97,13 +96,12 @@ def flaw(folder: pathlib.Path, identity_: str) -> str | None:
   return None
 
 
-def row(case: suites.Case, folder: pathlib.Path) -> dict[str, Any]:
-  """A case's line of results.jsonl, from its sealed folder."""
+def row(case: suites.Case, folder: pathlib.Path) -> case_rows.SuiteRow:
+  """A case's row, from its sealed folder."""
   seal = json.loads((folder / SEAL).read_text(encoding='utf-8'))
   config = archive.read_config(folder / 'config.json')
   result = archive.read_result(folder / 'result.json')
-  whole = suite_results.Row(
-    format=encoding.FORMAT,
+  return case_rows.SuiteRow(
     case=case.name,
     group=case.group,
     label=case.label,
@@ -118,7 +116,6 @@ def row(case: suites.Case, folder: pathlib.Path) -> dict[str, Any]:
     outcomes=result.outcomes,
     scenario=config.scenario,
   )
-  return plain.to_plain(whole)
 
 
 def _sha(path: pathlib.Path) -> str:

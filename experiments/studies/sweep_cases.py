@@ -22,7 +22,7 @@ class SweepError(errors.WaggleError):
 
 
 @dataclasses.dataclass(frozen=True)
-class Case:
+class Sample:
   """One episode of a sweep.
 
   Attributes:
@@ -83,7 +83,7 @@ def cases(
   factors: Mapping[str, Sequence[object]],
   base: Mapping[str, Any],
   repeats: int,
-) -> tuple[Case, ...]:
+) -> tuple[Sample, ...]:
   """Every case of a sweep, cell by cell.
 
   Each case has a seed of its own: 32 bits of a SHA-256 of the repeat and of all
@@ -141,7 +141,7 @@ def _num_bits(values: Mapping[str, Any]) -> int:
 
 def _case(
   cell: Mapping[str, Any], base: Mapping[str, Any], repeat: int
-) -> Case:
+) -> Sample:
   values = {**base, **cell}
   drawn = hashlib.sha256(_seed_text(values, repeat).encode()).digest()
   values['seed'] = int.from_bytes(drawn[:4], 'big')
@@ -149,7 +149,7 @@ def _case(
     bits = _num_bits(values)
     number = int.from_bytes(drawn[4:], 'little') % 2**bits
     values['payload'] = f'{number:0{bits}b}'
-  return Case(cell, repeat, values, scenario_fields.make(values))
+  return Sample(cell, repeat, values, scenario_fields.make(values))
 
 
 def _seed_text(values: Mapping[str, Any], repeat: int) -> str:

@@ -1,24 +1,27 @@
-"""Flies one case of a sweep and keeps a line of it."""
+"""Flies one case of a sweep and makes its row."""
 
 from collections.abc import Callable, Sequence
-import math
 from typing import Any
 
-from waggle_tasks import plain
 from waggle_tasks.agents import receiver
-from waggle_tasks.arenas import layouts
 from waggle_tasks.experiments.episodes import evaluator
 from waggle_tasks.experiments.episodes import rollout as rollout_lib
-from waggle_tasks.experiments.record import encoding, episode, verdicts
-from waggle_tasks.experiments.studies import job_progress, sweep_cases
+from waggle_tasks.experiments.record import episode, verdicts
+from waggle_tasks.experiments.studies import (
+  case_rows,
+  job_progress,
+  replay_flight,
+  sweep_cases,
+)
 
 
 def fly(
   report: Callable[[float], None],
-  case: sweep_cases.Case,
+  case: sweep_cases.Sample,
   receiver_name: str,
   identity: str,
-) -> dict[str, Any]:
+  replays: int,
+) -> case_rows.SweepRow:
   """Runs a case; called in a worker.
 
   Args:
@@ -26,69 +29,64 @@ def fly(
     case: The case.
     receiver_name: The receiver.
     identity: See `identity.of`.
+    replays: How many times the images are shown again, see `replay_flight`;
+      0 to fly with receivers.
 
   Returns:
-    The case's line of results.jsonl.
+    Its row.
   """
-  watchers = [job_progress.reporter(report)]
-  rollout = rollout_lib.run(case.scene, receiver_name, watchers)
+  if replays:
+    shown = replay_flight.fly(case.scene, receiver_name, replays, report)
+    passed = all(each.right for each in shown[-1])
+    return _row(case, receiver_name, identity, *shown, passed)
+  onlookers = [job_progress.reporter(report)]
+  rollout = rollout_lib.run(case.scene, receiver_name, onlookers)
   verdict = evaluator.evaluate(case.scene, rollout)
   return row(case, receiver_name, identity, rollout, verdict)
 
 
 def row(
-  case: sweep_cases.Case,
+  case: sweep_cases.Sample,
   receiver_name: str,
   identity: str,
   rollout: episode.Rollout,
   verdict: verdicts.Verdict,
-) -> dict[str, Any]:
-  """A case's line of results.jsonl, from its episode."""
+) -> case_rows.SweepRow:
+  """A case's row, from its episode."""
   poses = case.scene.poses()
-  whole = {
-    **head(case),
-    'identity': identity,
-    'receiver': receiver_name,
-    'renderer': rollout.renderer,
-    'simulated_s': round(float(rollout.times_s[-1]), 2),
-    'passed': verdict.passed,
-    'outcomes': [
-      {
-        **_exposure(each, poses[each.observer]),
-        **_reading(rollout.events[each.observer]),
-      }
-      for each in verdict.outcomes
-    ],
-    'scenario': case.values,
-  }
-  return encoding.stamped(whole)
+  exposures = [
+    case_rows.Exposure.of(
+      each, poses[each.observer], **_reading(rollout.events[each.observer])
+    )
+    for each in verdict.outcomes
+  ]
+  return _row(
+    case, receiver_name, identity, rollout.renderer, rollout.times_s[-1],
+    exposures, verdict.passed,
+  )  # fmt: skip
 
 
-def head(case: sweep_cases.Case) -> dict[str, Any]:
-  """The beginning of a case's line: its place in its sweep."""
-  return {'case': case.name, 'cell': dict(case.cell), 'repeat': case.repeat}
-
-
-def _exposure(outcome: verdicts.Outcome, pose: layouts.Pose) -> dict[str, Any]:
-  """What became of one observer, and where it stood."""
-  stages = [failure.partition(':')[0] for failure in outcome.failures]
-  return {
-    **plain.to_plain(outcome),
-    **place(pose),
-    'right': outcome.decoded == outcome.expected,
-    'wrong': outcome.wrong,
-    'unauthorised': outcome.unauthorised,
-    'stages': stages,
-  }
-
-
-def place(pose: layouts.Pose) -> dict[str, Any]:
-  """Where an observer stands, seen from the performer."""
-  x_m, y_m, _ = pose.position_m
-  return {
-    'true_angle_deg': round(math.degrees(math.atan2(x_m, -y_m)), 6),
-    'true_distance_m': round(math.hypot(x_m, y_m), 6),
-  }
+def _row(
+  case: sweep_cases.Sample,
+  receiver_name: str,
+  identity: str,
+  renderer: str,
+  simulated_s: float,
+  exposures: Sequence[case_rows.Exposure],
+  passed: bool,
+) -> case_rows.SweepRow:
+  return case_rows.SweepRow(
+    case=case.name,
+    cell=dict(case.cell),
+    repeat=case.repeat,
+    identity=identity,
+    receiver=receiver_name,
+    renderer=renderer,
+    simulated_s=round(float(simulated_s), 3),
+    passed=passed,
+    outcomes=tuple(exposures),
+    scenario=dict(case.values),
+  )
 
 
 def _reading(events: Sequence[episode.Event]) -> dict[str, Any]:

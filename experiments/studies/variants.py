@@ -4,31 +4,50 @@ The paper gives no sizes of gestures, no appearance, no settings of the tracker
 and no spacing of the line.
 """
 
+from collections.abc import Mapping
 import dataclasses
+from typing import Any
 
 from waggle_tasks import appearance
 from waggle_tasks.experiments.machine import table
-from waggle_tasks.experiments.studies import variant_runner
+from waggle_tasks.experiments.studies import case_rows
 from waggle_tasks.protocol import gestures
 
-
-def _moved(label: str, **changes: object) -> variant_runner.Variant:
-  return variant_runner.Variant(label, changes)
+Results = Mapping[str, list[case_rows.SuiteRow]]
 
 
-def _codebook(label: str, **sizes: float) -> variant_runner.Variant:
+@dataclasses.dataclass(frozen=True)
+class Variant:
+  """What is moved, or left out.
+
+  Attributes:
+    label: Its description, for tables.
+    changes: Fields of `Scenario` and their new values.
+    receiver: The receiver.
+  """
+
+  label: str
+  changes: dict[str, Any] = dataclasses.field(default_factory=dict)
+  receiver: str = 'klt'
+
+
+def _moved(label: str, **changes: object) -> Variant:
+  return Variant(label, changes)
+
+
+def _codebook(label: str, **sizes: float) -> Variant:
   return _moved(label, codebook=gestures.v_codebook(**sizes))
 
 
 def _look(
   label: str, floor: str = 'honeycomb', brightness: float = 1.0
-) -> variant_runner.Variant:
+) -> Variant:
   look = appearance.Appearance(floor, brightness=brightness)
   return _moved(label, appearance=look)
 
 
-def _klt(change: str) -> variant_runner.Variant:
-  return variant_runner.Variant(change, receiver=f'klt:{change}')
+def _klt(change: str) -> Variant:
+  return Variant(change, receiver=f'klt:{change}')
 
 
 VARIANTS = {
@@ -61,7 +80,7 @@ VARIANTS = {
 }
 
 
-def of(receiver: str) -> dict[str, variant_runner.Variant]:
+def of(receiver: str) -> dict[str, Variant]:
   """The variants for a receiver: numbers of the paper's are not moved."""
   return {
     name: dataclasses.replace(variant, receiver=receiver)
@@ -70,7 +89,7 @@ def of(receiver: str) -> dict[str, variant_runner.Variant]:
   }
 
 
-def report(results: variant_runner.Results) -> str:
+def report(results: Results) -> str:
   """Puts what changed into a table.
 
   Args:
@@ -79,20 +98,17 @@ def report(results: variant_runner.Results) -> str:
   lines = []
   for name, rows in results.items():
     changed = [
-      f'{row["case"]} {row["correct"]}/{row["observers"]}'
-      f' not {row["published"]["correct"]}/{row["observers"]}'
+      f'{row.case} {row.correct}/{row.observers}'
+      f' not {row.published.correct}/{row.observers}'
       for row in rows
-      if (row['correct'], row['passed'])
-      != (row['published']['correct'], row['published']['passed'])
+      if row.published is not None and not row.as_published
     ]
-    correct = sum(row['correct'] for row in rows)
+    got = case_rows.Tally.of(rows)
     lines.append(
       (
-        VARIANTS[name].label,
-        f'{correct}/{sum(row["observers"] for row in rows)}',
-        f'{sum(row["passed"] for row in rows)}/{len(rows)}',
+        VARIANTS[name].label, got.messages, got.groups,
         '; '.join(changed) or 'none',
       )
-    )
+    )  # fmt: skip
   header = ('choice moved', 'messages', 'groups', 'rows unlike the paper')
   return table.render(header, lines)

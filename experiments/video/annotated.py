@@ -1,7 +1,6 @@
 """A copy of a recording that shows what a receiver made of it."""
 
 import pathlib
-import types
 
 import cv2
 import numpy as np
@@ -18,7 +17,7 @@ _LEAST_PX, _MOST_PX = 480, 960  # Width of the picture.
 _ERRORS = (OSError, errors.WaggleError, cv2.error)
 
 
-class Film:
+class AnnotatedFilm:
   """Writes the video while a reader works; a context manager.
 
   Attributes:
@@ -50,15 +49,10 @@ class Film:
     self._pictures = 0
     self.problem = ''
 
-  def __enter__(self) -> 'Film':
+  def __enter__(self) -> 'AnnotatedFilm':
     return self
 
-  def __exit__(
-    self,
-    kind: type[BaseException] | None,
-    error: BaseException | None,
-    trace: types.TracebackType | None,
-  ) -> None:
+  def __exit__(self, kind: object, error: object, trace: object) -> None:
     if error is None and self._made is not None:
       try:
         self._made[1].close()
@@ -86,7 +80,7 @@ class Film:
     while self._begin_s + self._pictures / _FPS <= time_s + 1e-6:
       if shown is None:
         sight = self._watch.sight(image)
-        now = moment.Moment(time_s, Symbol.NULL, (sight,), {}, {})
+        now = moment.Instant(time_s, Symbol.NULL, (sight,), {}, {})
         shown = drawing.draw(now)
       encoder.write(shown)
       self._pictures += 1

@@ -1,15 +1,11 @@
-"""Films an episode while it runs: a watcher that leaves video files."""
+"""Films an episode while it runs: an onlooker that leaves video files."""
 
 import functools
 import pathlib
-import types
-
-from dm_control import composer
-import dm_env
 
 from waggle_tasks import scenario
-from waggle_tasks.agents import observer_agent
-from waggle_tasks.experiments.record import changes, story
+from waggle_tasks.arenas import layouts
+from waggle_tasks.experiments.record import changes, episode, story
 from waggle_tasks.experiments.video import encoders, layout, lens, page
 from waggle_tasks.protocol import checks
 
@@ -53,7 +49,7 @@ class Film:
     """
     name = name or f'{view}.webm'
     encoders.check_name(name)
-    names = [f'observer_{k + 1}' for k in range(scene.observers)]
+    names = layouts.names(scene.observers)
     views = [layout.COMPOSITE, *names, *layout.SHARED]
     checks.choice('view', view, views, layout.VideoError)
     agreement = scene.agreement
@@ -80,12 +76,7 @@ class Film:
   def __enter__(self) -> 'Film':
     return self
 
-  def __exit__(
-    self,
-    kind: type[BaseException] | None,
-    error: BaseException | None,
-    trace: types.TracebackType | None,
-  ) -> None:
+  def __exit__(self, kind: object, error: object, trace: object) -> None:
     """Completes the files; an error of the episode goes before theirs."""
     errors = []
     for _, _, worker in self._pages:
@@ -96,14 +87,9 @@ class Film:
     if errors and error is None:
       raise errors[0]
 
-  def __call__(
-    self,
-    environment: composer.Environment,
-    timestep: dm_env.TimeStep,
-    team: observer_agent.Team,
-  ) -> None:
+  def __call__(self, step: episode.Step) -> None:
     """Looks at a frame, and films it when the video has a picture for it."""
-    self._lens.note(environment, timestep, team)
+    self._lens.note(step)
     due = round(self._pictures * self._rate_hz / self._fps)
     if self._lens.frame < due:
       return

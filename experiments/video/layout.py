@@ -110,7 +110,7 @@ class Design:
 
 
 @dataclasses.dataclass(frozen=True)
-class Layout(Design):
+class PageLayout(Design):
   """A page of the composite video.
 
   Attributes:
@@ -150,7 +150,7 @@ def single(
   return design, Rect(0, design.px(_TITLE), width, height)
 
 
-def plan(observers: int, scale: float = 1.0, notes: int = 0) -> Layout:
+def plan(observers: int, scale: float = 1.0, notes: int = 0) -> PageLayout:
   """Lays out a page of the composite video.
 
   Every page is 1024 wide at scale 1 and as high as it needs to be: observers
@@ -195,7 +195,7 @@ def plan(observers: int, scale: float = 1.0, notes: int = 0) -> Layout:
   def rect(left: float, top: float, width: float, height: float) -> Rect:
     return Rect(*(round(scale * v) for v in (left, top, width, height)))
 
-  return Layout(
+  return PageLayout(
     scale,
     2 * round(_WIDTH * scale / 2),
     2 * round((top + strip + _GAP) * scale / 2),

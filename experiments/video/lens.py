@@ -3,15 +3,13 @@
 from collections.abc import Sequence
 import math
 
-from dm_control import composer, mjcf
-import dm_env
+from dm_control import mjcf
 import mujoco
 import numpy as np
 
 from waggle_tasks import scenario
-from waggle_tasks.agents import observer_agent
 from waggle_tasks.entities import renderer
-from waggle_tasks.experiments.record import story
+from waggle_tasks.experiments.record import episode, story
 from waggle_tasks.experiments.video import layout, moment
 
 
@@ -38,22 +36,18 @@ class Lens:
     self._watches: dict[str, moment.Watch] = {}
     self.frame = -1
 
-  def note(
-    self,
-    environment: composer.Environment,
-    timestep: dm_env.TimeStep,
-    team: observer_agent.Team,
-  ) -> None:
+  def note(self, step: episode.Step) -> None:
     """Takes what happened in a frame."""
-    task = environment.task
-    self._environment, self._observations = environment, timestep.observation
-    if timestep.first():
+    task = step.environment.task
+    self._environment = step.environment
+    self._observations = step.timestep.observation
+    if step.timestep.first():
       names = [each.mjcf_model.model for each in task.observers]
       self._watches = {
         name: moment.Watch(name, agent)
-        for name, agent in zip(names, team.agents, strict=True)
+        for name, agent in zip(names, step.team.agents, strict=True)
       }
-      self._renderer = renderer.Renderer(environment.physics)
+      self._renderer = renderer.Renderer(step.environment.physics)
     for watch in self._watches.values():
       watch.note(task.refusals)
     self.frame += 1
@@ -64,7 +58,7 @@ class Lens:
 
   def moment(
     self, names: Sequence[str], shared: dict[str, np.ndarray]
-  ) -> moment.Moment:
+  ) -> moment.Instant:
     """The moment of the latest frame.
 
     Args:
@@ -81,7 +75,7 @@ class Lens:
     sights = tuple(self._watches[name].sight(images[name]) for name in names)
     symbol = story.symbol_at(self._sent, time_s)
     places = {name: self._places(self._shared[name]) for name in shared}
-    return moment.Moment(time_s, symbol, sights, shared, places)
+    return moment.Instant(time_s, symbol, sights, shared, places)
 
   def _places(self, camera: str) -> dict[str, tuple[float, float]]:
     """Columns and rows of the vehicles that stand before a camera."""

@@ -14,7 +14,7 @@ from waggle_tasks.tasks import safety
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
-class Sight:
+class View:
   """One observer: what it sees, and what it makes of that.
 
   Attributes:
@@ -35,7 +35,7 @@ class Sight:
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
-class Moment:
+class Instant:
   """Everyone at one time.
 
   Attributes:
@@ -48,7 +48,7 @@ class Moment:
 
   time_s: float
   sent: Symbol
-  sights: tuple[Sight, ...]
+  sights: tuple[View, ...]
   shared: dict[str, np.ndarray]
   places: dict[str, dict[str, tuple[float, float]]]
 
@@ -90,9 +90,9 @@ class Watch:
         if getattr(event, 'symbol', None) is Symbol.NULL:
           self._trail_px = self._trail_px[-1:]
 
-  def sight(self, image: np.ndarray) -> Sight:
+  def sight(self, image: np.ndarray) -> View:
     """What it sees now; the image is copied."""
-    return Sight(
+    return View(
       self._name,
       image.copy(),
       self._agent.receiver.track,

@@ -16,7 +16,7 @@ from waggle_tasks.experiments.video import sources
 _OPTIONS = f'protocol_whitelist;file|max_pixels;{sources.MAX_SIDE_PX**2}'
 
 
-class Film:
+class OpencvFilm:
   """A `Source`: an open video."""
 
   def __init__(self, path: pathlib.Path, fps: float | None) -> None:

@@ -19,7 +19,7 @@ class Page(Protocol):
     """Width and height in pixels."""
     ...
 
-  def draw(self, now: moment.Moment) -> np.ndarray:
+  def draw(self, now: moment.Instant) -> np.ndarray:
     """The picture of a moment, (H, W, 3) uint8 RGB; a buffer to be reused."""
     ...
 
@@ -57,7 +57,7 @@ class Composite:
     """Width and height in pixels."""
     return self._plan.width, self._plan.height
 
-  def draw(self, now: moment.Moment) -> np.ndarray:
+  def draw(self, now: moment.Instant) -> np.ndarray:
     """The picture of a moment, (H, W, 3) uint8 RGB; a buffer to be reused."""
     canvas, plan = self._canvas, self._plan
     pen.fill(canvas, layout.Rect(0, 0, *self.size), GROUND)
@@ -105,7 +105,7 @@ class Single:
     height, width, _ = self._canvas.shape
     return width, height
 
-  def draw(self, now: moment.Moment) -> np.ndarray:
+  def draw(self, now: moment.Instant) -> np.ndarray:
     """The picture of a moment, (H, W, 3) uint8 RGB; a buffer to be reused."""
     sight = next((s for s in now.sights if s.name == self._view), None)
     if not self._marks:
@@ -123,7 +123,7 @@ class Single:
     self._clock(now)
     return self._canvas
 
-  def _clock(self, now: moment.Moment) -> None:
+  def _clock(self, now: moment.Instant) -> None:
     """Writes the time into the right end of the line below the picture."""
     foot, size = self._design.foot(self._picture), self._design.px(15)
     clock = f'{now.time_s:.2f} s'

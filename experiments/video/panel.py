@@ -20,9 +20,9 @@ _STEPS_S = (1, 2, 5, 10, 20, 50, 100)
 
 def header(
   canvas: np.ndarray,  # (H, W, 3) uint8
-  plan: layout.Layout,
+  plan: layout.PageLayout,
   title: str,
-  now: moment.Moment,
+  now: moment.Instant,
 ) -> None:
   """Writes what is being flown, and the simulation time."""
   rect, size = plan.header, plan.px(16)
@@ -55,7 +55,7 @@ def notes(changed: Sequence[str]) -> list[str]:
 
 def write_notes(
   canvas: np.ndarray,  # (H, W, 3) uint8
-  plan: layout.Layout,
+  plan: layout.PageLayout,
   lines: Sequence[str],
 ) -> None:
   """Writes the lines of `notes` below the header."""
@@ -67,8 +67,8 @@ def write_notes(
 
 def card(
   canvas: np.ndarray,  # (H, W, 3) uint8
-  plan: layout.Layout,
-  sights: Sequence[moment.Sight],
+  plan: layout.PageLayout,
+  sights: Sequence[moment.View],
 ) -> None:
   """Writes the latest events, the newest on top."""
   rect = plan.card
@@ -89,7 +89,7 @@ def card(
 
 def _entry(
   canvas: np.ndarray,
-  plan: layout.Layout,
+  plan: layout.PageLayout,
   event: episode.Event,
   name: str,
   middle: int,
@@ -126,7 +126,7 @@ class Strip:
 
   def __init__(
     self,
-    plan: layout.Layout,
+    plan: layout.PageLayout,
     names: Sequence[str],
     sent: Sequence[story.Sent],
     end_s: float,
@@ -195,7 +195,7 @@ class Strip:
   def draw(
     self,
     canvas: np.ndarray,  # (H, W, 3) uint8
-    now: moment.Moment,
+    now: moment.Instant,
   ) -> None:
     """Adds new events, and draws the strip with a line for now."""
     for row, sight in enumerate(now.sights, start=1):

@@ -26,7 +26,7 @@ _BOUND = {'max_pixels': str(sources.MAX_SIDE_PX**2)}
 _ERRORS = (av.FFmpegError, OSError, ValueError)
 
 
-class Film:
+class PyavFilm:
   """A `Source`: an open video."""
 
   def __init__(self, path: pathlib.Path, fps: float | None) -> None:

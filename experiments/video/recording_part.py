@@ -9,7 +9,7 @@ RecordingError = sources.RecordingError
 
 
 @dataclasses.dataclass(frozen=True)
-class Part:
+class RecordingPart:
   """Which part of a recording is read.
 
   Attributes:

@@ -26,7 +26,7 @@ _SLACK_S = 1.0  # A container may announce so much more than it holds.
 _NEAR_S = 0.0095
 _MOST_STUCK = 5000  # Pictures in a row without a time of their own.
 
-Part = recording_part.Part
+RecordingPart = recording_part.RecordingPart
 RecordingError = sources.RecordingError
 
 
@@ -67,7 +67,7 @@ class Recording:
   def __exit__(self, *_: object) -> None:
     self._source.close()
 
-  def frames(self, part: Part) -> Iterator[tuple[np.ndarray, float]]:
+  def frames(self, part: RecordingPart) -> Iterator[tuple[np.ndarray, float]]:
     """Reads a part; call it once.
 
     Yields:
@@ -96,13 +96,13 @@ class Recording:
       yield np.ascontiguousarray(image), time_s * part.speed
     self._check_end(part, count)
 
-  def offset_px(self, part: Part) -> np.ndarray:  # (2,)
+  def offset_px(self, part: RecordingPart) -> np.ndarray:  # (2,)
     """What takes a place in a picture of `frames` to the whole picture."""
     rows, columns = part.crop(self.width, self.height)
     top, _, left, _ = part.border(rows, columns)
     return np.array([columns.start - left, rows.start - top], float)
 
-  def _times(self, part: Part) -> Iterator[sources.Timed]:
+  def _times(self, part: RecordingPart) -> Iterator[sources.Timed]:
     """The pictures of a part, those left out that are too near to another."""
     near_s = _NEAR_S / part.speed
     last_s, stuck = -math.inf, 0
@@ -122,7 +122,7 @@ class Recording:
         last_s = time_s
         yield time_s, picture
 
-  def _check_length(self, part: Part) -> None:
+  def _check_length(self, part: RecordingPart) -> None:
     """Refuses too long a part before an hour of it is read."""
     end_s = self.length_s if part.end_s is None else part.end_s
     if end_s - part.start_s > MAX_LENGTH_S:
@@ -134,7 +134,7 @@ class Recording:
       f' {length_s:.0f} s; choose a part with --start and --end'
     )
 
-  def _check_end(self, part: Part, count: int) -> None:
+  def _check_end(self, part: RecordingPart, count: int) -> None:
     """Refuses a recording that ended too early; notes one that seems to."""
     self._source.check()
     reached_s, announced_s = self._reached_s, self.length_s
@@ -176,8 +176,8 @@ def _open(path: pathlib.Path, fps: float | None) -> sources.Source:
   try:
     from waggle_tasks.experiments.video import pyav_film
   except ImportError:
-    return opencv_film.Film(path, fps)
-  return pyav_film.Film(path, fps)
+    return opencv_film.OpencvFilm(path, fps)
+  return pyav_film.PyavFilm(path, fps)
 
 
 def _check_file(path: pathlib.Path) -> None:

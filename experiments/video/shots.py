@@ -3,14 +3,13 @@
 from collections.abc import Mapping, Sequence
 
 import cv2
-from dm_control import composer
-import dm_env
 import numpy as np
 
 from waggle_tasks import scenario
-from waggle_tasks.agents import observer_agent, receivers
+from waggle_tasks.agents import receivers
+from waggle_tasks.arenas import layouts
 from waggle_tasks.experiments.episodes import rollout as rollout_lib
-from waggle_tasks.experiments.record import story, traces
+from waggle_tasks.experiments.record import episode, story, traces
 from waggle_tasks.experiments.results import palette
 from waggle_tasks.experiments.video import film, layout, lens, page, pen
 from waggle_tasks.protocol import agreement as agreement_lib
@@ -25,7 +24,7 @@ _GAP, _TITLE = 8, 30
 
 
 class Shots:
-  """A watcher that keeps what the pictures show.
+  """An onlooker that keeps what the pictures show.
 
   Attributes:
     composite: (H, W, 3) uint8 RGB, a picture of the composite video.
@@ -33,9 +32,9 @@ class Shots:
   """
 
   def __init__(self, scene: scenario.Scenario) -> None:
-    """Makes the watcher of an episode that has not begun."""
+    """Makes the onlooker of an episode that has not begun."""
     self._lens = lens.Lens(scene)
-    self._names = tuple(f'observer_{k + 1}' for k in range(scene.observers))
+    self._names = tuple(layouts.names(scene.observers))
     self._page = film.composite(scene, self._names)
     self._at = scene.agreement.frames(_TIME_S)
     self._wanted = {
@@ -46,20 +45,16 @@ class Shots:
     self.composite: np.ndarray | None = None
     self.images: dict[int, np.ndarray] = {}
 
-  def __call__(
-    self,
-    environment: composer.Environment,
-    timestep: dm_env.TimeStep,
-    team: observer_agent.Team,
-  ) -> None:
+  def __call__(self, step: episode.Step) -> None:
     """Keeps what belongs to this frame."""
-    self._lens.note(environment, timestep, team)
+    self._lens.note(step)
     frame = self._lens.frame
     if frame == self._at:
       now = self._lens.moment(self._names, self._lens.shared())
       self.composite = self._page.draw(now).copy()
     if frame in self._wanted:
-      self.images[frame] = timestep.observation[_OBSERVER]['camera'].copy()
+      seen = step.timestep.observation[_OBSERVER]
+      self.images[frame] = seen['camera'].copy()
 
 
 def firsts(sent: Sequence[story.Sent]) -> list[story.Sent]:

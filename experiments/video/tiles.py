@@ -25,7 +25,7 @@ def observer(
   canvas: np.ndarray,  # (H, W, 3) uint8
   plan: layout.Design,
   picture: layout.Rect,
-  sight: moment.Sight,
+  sight: moment.View,
 ) -> None:
   """Draws an observer's image with its track, its state and its symbols."""
   within = layout.fitted(picture, sight.image)
@@ -114,7 +114,7 @@ def _bar(
 
 
 def _marks(
-  picture: np.ndarray, plan: layout.Design, sight: moment.Sight
+  picture: np.ndarray, plan: layout.Design, sight: moment.View
 ) -> None:
   """Draws the track: a trail, where it rests, and where it is."""
   if sight.track is None:
@@ -143,7 +143,7 @@ def _symbols(
   canvas: np.ndarray,
   plan: layout.Design,
   foot: layout.Rect,
-  sight: moment.Sight,
+  sight: moment.View,
 ) -> None:
   """Writes the symbols of the frame under way."""
   pen.fill(canvas, foot, BAR)

@@ -12,7 +12,7 @@ import pytest
 from waggle_tasks import scenario, sensor
 from waggle_tasks.agents import navigator, observer_agent
 from waggle_tasks.experiments.episodes import rollout
-from waggle_tasks.experiments.record import capture
+from waggle_tasks.experiments.record import capture, episode
 
 SHAPE = (480, 640, 3)
 
@@ -209,7 +209,7 @@ def test_what_a_receiver_without_a_track_takes_is_captured(
       timestep = types.SimpleNamespace(
         first=lambda frame=frame: frame == 0, observation=[seen]
       )
-      recorder(room, timestep, team)
+      recorder(episode.Step(room, timestep, team))
   (path,) = capture.paths(tmp_path)
   assert [image[0, 0, 0] for image, _ in capture.read(path)] == [0, 1, 2]
 

@@ -22,7 +22,7 @@ from waggle_tasks.experiments.video import recordings
 from waggle_tasks.protocol import agreement, camera, gestures
 
 Waggle = Callable[..., subprocess.CompletedProcess[str]]
-Part = recordings.Part
+Part = recordings.RecordingPart
 WANTED = ['NULL', 'START', 'NULL', '0', 'NULL']
 
 

@@ -22,7 +22,7 @@ av = pytest.importorskip('av')
 small = pytest.importorskip('small_films', exc_type=ImportError)
 
 Waggle = Callable[..., subprocess.CompletedProcess[str]]
-Part = recordings.Part
+Part = recordings.RecordingPart
 MENDS = r"pip install 'waggle-tasks\[video\]'"
 
 

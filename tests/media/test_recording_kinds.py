@@ -47,7 +47,7 @@ def unread(
     seen = camera.Camera(recording.width, recording.height, kind.focal_px)
     agreed = dataclasses.replace(dance.agreement, camera=seen)
     readers = [reader.Reader(name, agreed) for name in names]
-    for image, time_s in recording.frames(recordings.Part()):
+    for image, time_s in recording.frames(recordings.RecordingPart()):
       for each in readers:
         each.take(image, time_s)
   path.unlink()

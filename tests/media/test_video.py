@@ -15,7 +15,7 @@ from waggle_tasks import registry, scenario
 from waggle_tasks.agents import observer_agent, receiver
 from waggle_tasks.entities import renderer
 from waggle_tasks.experiments.episodes import rollout as rollout_lib
-from waggle_tasks.experiments.record import story, writer
+from waggle_tasks.experiments.record import episode, story, writer
 from waggle_tasks.experiments.results import palette
 from waggle_tasks.experiments.video import (
   encoders,
@@ -55,7 +55,7 @@ def overlap(a: layout.Rect, b: layout.Rect) -> bool:
   )  # fmt: skip
 
 
-def parts(plan: layout.Layout) -> list[layout.Rect]:
+def parts(plan: layout.PageLayout) -> list[layout.Rect]:
   """Everything on a page, pictures with their titles and feet."""
   out = [plan.header, plan.card, plan.strip]
   for picture in (*plan.observers, *plan.shared.values()):
@@ -323,12 +323,12 @@ def strip_of(*events: object) -> np.ndarray:
   """The strip of events at the end of a broadcast, (H, W, 3)."""
   plan = layout.plan(1)
   strip = panel.Strip(plan, ['observer_1'], (), 104.6)
-  sight = moment.Sight(
+  sight = moment.View(
     'observer_1', np.zeros((2, 2, 3), np.uint8), None, np.empty((0, 2)),
     story.Reading(), events,
   )  # fmt: skip
   canvas = np.zeros((plan.height, plan.width, 3), np.uint8)
-  strip.draw(canvas, moment.Moment(0.0, Symbol.NULL, (sight,), {}, {}))
+  strip.draw(canvas, moment.Instant(0.0, Symbol.NULL, (sight,), {}, {}))
   return canvas[plan.strip.slices]
 
 
@@ -370,12 +370,12 @@ def test_rings_are_where_a_camera_sees_the_vehicles(view: str) -> None:
   scene = scenario.Scenario(control='no_send', duration_s=0.08)
   seen = lens.Lens(scene)
 
-  def look(environment: object, timestep: object, team: object) -> None:
-    seen.note(environment, timestep, team)
+  def look(step: episode.Step) -> None:
+    seen.note(step)
     now = seen.moment(('observer_1',), seen.shared())
-    physics, (width, height) = environment.physics, layout.VIEW_PX
+    physics, (width, height) = step.environment.physics, layout.VIEW_PX
     camera = engine.Camera(physics, height, width, layout.SHARED[view])
-    spots = environment.task.positions_m(physics)
+    spots = step.environment.task.positions_m(physics)
     wanted = {}
     for name, place_m in spots.items():
       x, y, z = camera.matrix @ [*place_m, 1.0]
@@ -389,9 +389,10 @@ def test_rings_seen_from_above_stand_as_the_vehicles_do() -> None:
   scene = scenario.Scenario(control='no_send', duration_s=0.08)
   seen = lens.Lens(scene)
 
-  def look(environment: object, timestep: object, team: object) -> None:
-    seen.note(environment, timestep, team)
+  def look(step: episode.Step) -> None:
+    seen.note(step)
     places = seen.moment((), seen.shared()).places['top']
+    environment = step.environment
     spots = environment.task.positions_m(environment.physics)
     ground = np.array([spots[name][:2] for name in places])
     pixels = np.array([*places.values()]) * (1.0, -1.0)

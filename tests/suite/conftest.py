@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 import dataclasses
+import functools
 import json
 import pathlib
 import shutil
@@ -10,7 +11,12 @@ import pytest
 
 from waggle_tasks import suites
 from waggle_tasks.experiments.pages import run_page
-from waggle_tasks.experiments.studies import suite_runner
+from waggle_tasks.experiments.studies import (
+  case_rows,
+  pool,
+  runner,
+  suite_study,
+)
 
 # The longest comes first to the workers, the shortest to the table.
 ROWS = (
@@ -49,12 +55,12 @@ class Own:
 
   command = 'waggle suite --suite=own.json --receiver=klt'
 
-  def run(self, workers: int = 1) -> list[dict[str, object]]:
+  def run(self, workers: int = 1) -> list[case_rows.SuiteRow]:
     """Runs what is missing."""
     cases = suites.from_rows(self.rows)
-    return suite_runner.run(
-      cases, 'klt', self.folder, workers, self.command, run_page.leave
-    )
+    study = suite_study.Suite(cases, 'klt', run_page.leave)
+    engine = functools.partial(pool.run, workers=workers)
+    return runner.run(study, self.folder, engine, self.command)
 
   def results(self) -> dict[str, bytes]:
     """Every file that must repeat bit for bit."""

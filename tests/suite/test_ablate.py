@@ -1,20 +1,19 @@
 """What the receivers' parts are good for: the table and the command."""
 
 from collections.abc import Callable
-import dataclasses
 import functools
 import pathlib
 import re
 import subprocess
 
 import pytest
+import suite_rows
 
 from waggle_tasks.agents import receivers
 from waggle_tasks.experiments.record import verdicts
-from waggle_tasks.experiments.studies import ablations
+from waggle_tasks.experiments.studies import ablations, case_rows
 
 Waggle = Callable[..., subprocess.CompletedProcess[str]]
-Row = dict[str, object]
 
 
 @pytest.mark.parametrize('name', ablations.ABLATIONS)
@@ -35,32 +34,25 @@ def test_no_two_ablations_are_the_same() -> None:
 
 
 def outcome(
-  decoded: str | None,
-  expected: str | None = '000010',
-  start_s: float | None = None,
-  failures: tuple[str, ...] = (),
-) -> Row:
-  made = verdicts.Outcome(
-    'observer_0', expected, decoded, start_s=start_s, failures=failures
-  )
-  return dataclasses.asdict(made)
+  decoded: str | None, expected: str | None = '000010', **more: object
+) -> verdicts.Outcome:
+  return verdicts.Outcome('observer_1', expected, decoded, **more)
 
 
 READ = outcome('000010', start_s=95.6)
 NONE = outcome(None)
 
 
-def row(group: str, *outcomes: Row, passed: bool = True) -> Row:
-  return {
-    'group': group, 'observers': len(outcomes), 'passed': passed,
-    'outcomes': outcomes,
-    'correct': sum(
-      o['decoded'] == o['expected'] != None for o in outcomes  # noqa: E711
-    ),
-  }  # fmt: skip
+def row(
+  group: str, *outcomes: verdicts.Outcome, passed: bool = True
+) -> case_rows.SuiteRow:
+  return suite_rows.make(
+    group=group, observers=len(outcomes), passed=passed, outcomes=outcomes,
+    correct=sum(each.correct for each in outcomes),
+  )  # fmt: skip
 
 
-def lines(results: dict[str, list[Row]]) -> list[list[str]]:
+def lines(results: dict[str, list[case_rows.SuiteRow]]) -> list[list[str]]:
   text = ablations.report(results).split('\n\n')[0]
   return [re.split(r' {2,}', line.strip()) for line in text.splitlines()]
 
@@ -79,7 +71,7 @@ def test_the_table_tells_messages_from_groups_and_right_from_wrong() -> None:
         row('standard', READ, READ, passed=False),
         row('standard', outcome('111111', start_s=90.0), NONE, passed=False),
         row('supplemental', outcome(None, failures=moved), passed=False),
-        row('controls', outcome('000010', None, 20.0), passed=False),
+        row('controls', outcome('000010', None, start_s=20.0), passed=False),
       ],
     }
   )

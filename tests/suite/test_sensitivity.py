@@ -8,13 +8,13 @@ import re
 import subprocess
 
 import pytest
+import suite_rows
 
 from waggle_tasks import suites
 from waggle_tasks.agents import receivers
-from waggle_tasks.experiments.studies import variants
+from waggle_tasks.experiments.studies import case_rows, variants
 
 Waggle = Callable[..., subprocess.CompletedProcess[str]]
-Row = dict[str, object]
 CASES = suites.find('paper')
 
 
@@ -61,24 +61,21 @@ def test_open_choices_are_moved_both_ways(field: str) -> None:
   assert any(each > chosen for each in moved)
 
 
-def row(case: suites.Case, correct: int, passed: bool) -> Row:
-  published = dataclasses.asdict(case.published)
-  return {
-    'case': case.name, 'observers': case.scene.observers, 'correct': correct,
-    'passed': passed, 'published': published,
-  }  # fmt: skip
+def row(case: suites.Case, correct: int, passed: bool) -> case_rows.SuiteRow:
+  return suite_rows.make(
+    case=case.name, observers=case.scene.observers, correct=correct,
+    passed=passed, published=case.published,
+  )  # fmt: skip
 
 
 def test_the_report_names_the_rows_that_changed() -> None:
+  cases = suites.find('standard')
+  moved = {'span-15': (1, False), 'distance-1-0': (3, True)}
+  given = {case.name: dataclasses.astuple(case.published) for case in cases}
   results = {
-    name: [
-      row(each, each.published.correct, each.published.passed)
-      for each in suites.find('standard')
-    ]
-    for name in ('base', 'dim')
+    name: [row(case, *values[case.name]) for case in cases]
+    for name, values in (('base', given), ('dim', given | moved))
   }
-  results['dim'][11] |= {'correct': 1, 'passed': False}  # span-15
-  results['dim'][9] |= {'correct': 3, 'passed': True}  # distance-1-0
   head, _, base, dim = variants.report(results).splitlines()
   assert re.split(r' {2,}', head.strip())[:3] == [
     'choice moved', 'messages', 'groups',

@@ -6,7 +6,6 @@ import json
 import pathlib
 import re
 import subprocess
-import sys
 
 import pytest
 
@@ -102,26 +101,7 @@ def test_two_finished_folders_are_set_side_by_side_without_gl(
   )
 
 
-# Bad input. Python and dm_control take a second to start, so that one process
-# takes every line; it forgets the flags in between.
-SCRIPT = """
-import contextlib, io, json, sys
-from absl import flags
-from waggle_tasks.experiments import launch
-
-answers = []
-for argv in json.load(sys.stdin):
-  for name in flags.FLAGS:
-    flags.FLAGS[name].unparse()
-  said = io.StringIO()
-  with contextlib.redirect_stderr(said), contextlib.redirect_stdout(said):
-    try:
-      status = launch.run('waggle_tasks.experiments.suite', ['suite', *argv])
-    except Exception as error:
-      status = repr(error)
-  answers.append((status, said.getvalue()))
-print(json.dumps(answers))
-"""
+# Bad input.
 OWN = {
   'broken.json': '[{"name": "a"',
   'table.json': '{"name": "a"}',
@@ -148,6 +128,7 @@ FLAGS = {
   '--receiver=kl': "`receiver` must be .*: got 'kl'. Did you mean klt",
   '--receiver=klt:hold=3': "got 'hold'. Did you mean hold_s",
   'paper': "takes only flags, --name=value: got 'paper'",
+  '--scheduler=tcp://127.0.0.1:1': '`scheduler` (must be|needs an extra)',
   '--compare=WHOLE': '--compare takes two folders: got 1',
   '--compare=WHOLE WHOLE WHOLE': '--compare takes two folders: got 3',
   '--compare=WHOLE none': 'must name folders of finished suites: none',
@@ -160,7 +141,9 @@ FLAGS = {
 
 @pytest.fixture(scope='module')
 def answers(
-  tmp_path_factory: pytest.TempPathFactory, reference: object
+  tmp_path_factory: pytest.TempPathFactory,
+  reference: object,
+  ask: Callable[..., list],
 ) -> dict[str, tuple[int | str, str]]:
   """Exit status, or what was raised, and output of each line of `FLAGS`."""
   here = tmp_path_factory.mktemp('bad')
@@ -184,23 +167,15 @@ def answers(
     if not any(word.startswith(('--suite', '--case')) for word in argv):
       # Should it run all the same, it is over soon.
       argv = ['--suite=controls', '--case=no-send', *argv]
-    argvs.append(['--output=out', *argv])
-  done = subprocess.run(
-    [sys.executable, '-c', SCRIPT],
-    input=json.dumps(argvs),
-    capture_output=True,
-    text=True,
-    check=True,
-    cwd=here,
-  )
-  return dict(zip(FLAGS, json.loads(done.stdout), strict=True))
+    argvs.append(['suite', '--output=out', *argv])
+  return dict(zip(FLAGS, ask(argvs, here), strict=True))
 
 
 @pytest.mark.parametrize('line', FLAGS)
 def test_bad_input_is_one_line(
   answers: dict[str, tuple[int | str, str]], line: str
 ) -> None:
-  status, said = answers[line]
+  status, said, _ = answers[line]
   assert status == 2, said
   assert said.count('\n') == 1
   assert said.startswith('waggle suite: ')

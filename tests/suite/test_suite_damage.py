@@ -151,7 +151,7 @@ def test_results_of_other_sources_are_run_anew_with_a_notice(
   assert re.search(notice, capsys.readouterr().out)
   (row,) = blink.run()
   assert re.search(notice, capsys.readouterr().out)
-  assert row['identity'] != there['identity']
+  assert row.identity != there.identity
   assert blink.results() == blink_reference.results()
 
 

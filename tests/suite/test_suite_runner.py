@@ -15,7 +15,7 @@ import pytest
 from waggle_tasks import suites
 from waggle_tasks.experiments.pages import run_page
 from waggle_tasks.experiments.record import folders, provenance
-from waggle_tasks.experiments.studies import pool, suite_case
+from waggle_tasks.experiments.studies import case_rows, pool, suite_case
 
 FILES = {
   'config.json', 'events.jsonl', 'result.json', 'provenance.json', 'seal.json',
@@ -39,7 +39,7 @@ def test_every_case_leaves_its_files_and_its_line(reference: object) -> None:
 
 
 def test_the_rows_returned_are_the_lines_of_the_file(finished: object) -> None:
-  assert finished.run() == finished.lines()
+  assert [case_rows.table(row) for row in finished.run()] == finished.lines()
 
 
 def test_the_csv_has_a_line_for_each_observer(reference: object) -> None:
@@ -66,7 +66,7 @@ def test_a_case_says_what_made_it(reference: object) -> None:
   assert origin['versions'] == provenance.versions()
   assert origin['renderer']
   assert origin['began'] <= origin['ended']
-  name = 'waggle_tasks.experiments.studies.suite_runner'
+  name = 'waggle_tasks.experiments.studies.runner'
   assert re.fullmatch('[0-9a-f]{64}', origin['sources'][name])
 
 
@@ -144,16 +144,14 @@ def test_a_case_reports_exactly_the_frames_that_it_simulates(
   jobs = [
     pool.Job(
       case.name, suite_case.fly,
-      (
-        case, 'klt', 'identity', reference.command, tmp_path / case.name,
-        run_page.leave,
-      ),
+      (case, 'klt', 'identity', reference.command, run_page.leave),
+      draft=tmp_path / case.name,
     )
     for case in suites.from_rows(reference.rows[:2])
   ]  # fmt: skip
   told = {}
   for news in pool.run(jobs, 1):
-    if isinstance(news, pool.Progress):
+    if isinstance(news, pool.Advance):
       told[news.job.name] = news.amount
   assert told == pytest.approx({'silent': 1.0, 'pair': 4.0})
 
@@ -167,12 +165,12 @@ def test_a_case_that_is_tried_again_does_not_upset_the_bar(
 
   def retry(
     jobs: list[pool.Job], workers: int
-  ) -> Iterator[pool.Progress | pool.Done]:
+  ) -> Iterator[pool.Advance | pool.Done]:
     del workers
     (job,) = jobs
     for _ in range(3):  # Two workers died near the end.
       time.sleep(0.6)  # So long that the bar is drawn.
-      yield pool.Progress(job, 1.0)
+      yield pool.Advance(job, 1.0)
     shutil.copytree(blink_reference.home('blink'), drafts / 'blink')
     yield pool.Done(job, None)
 

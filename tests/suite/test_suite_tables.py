@@ -1,39 +1,50 @@
 """The tables of a suite, beside the paper's, and of two suites."""
 
-import copy
+import dataclasses
 import re
 
 import pytest
+import suite_rows
 
 from waggle_tasks import suites
+from waggle_tasks.experiments.record import verdicts
 from waggle_tasks.experiments.results import suite_tables
+from waggle_tasks.experiments.studies import case_rows
 
-Row = dict[str, object]
+Row = case_rows.SuiteRow
 
 
 def published_row(case: suites.Case) -> Row:
-  """The line of a case that gave just what the paper did."""
+  """The row of a case that gave just what the paper did."""
   scene, published = case.scene, case.published
   expecting = {'none': scene.observers, 'black_input': scene.observers - 1}
   failed = 0 if published.passed else scene.observers - published.correct
-  outcomes = [
-    {
-      'observer': f'observer_{number + 1}',
-      'failures': ['message: none'] * (number < failed),
-    }
+  outcomes = tuple(
+    verdicts.Outcome(
+      f'observer_{number + 1}',
+      None,
+      failures=('message: none',) * (number < failed),
+    )
     for number in range(scene.observers)
+  )
+  return suite_rows.make(
+    case=case.name, group=case.group, label=case.label,
+    observers=scene.observers, expecting=expecting.get(scene.control, 0),
+    correct=published.correct, passed=published.passed, published=published,
+    outcomes=outcomes,
+  )  # fmt: skip
+
+
+def failing(outcome: verdicts.Outcome, *failures: str) -> verdicts.Outcome:
+  return dataclasses.replace(outcome, failures=failures)
+
+
+def changed(rows: list[Row], case: str, **values: object) -> list[Row]:
+  """The rows, one of which has other values."""
+  return [
+    dataclasses.replace(row, **values) if row.case == case else row
+    for row in rows
   ]
-  return {
-    'case': case.name,
-    'group': case.group,
-    'label': case.label,
-    'observers': scene.observers,
-    'expecting': expecting.get(scene.control, 0),
-    'correct': published.correct,
-    'passed': published.passed,
-    'published': {'correct': published.correct, 'passed': published.passed},
-    'outcomes': outcomes,
-  }
 
 
 @pytest.fixture
@@ -82,10 +93,12 @@ def test_the_totals_are_the_papers_when_the_rows_are(paper: list[Row]) -> None:
 def test_an_interval_of_messages_is_never_without_width(
   paper: list[Row], correct: tuple[int, ...], said: str
 ) -> None:
-  rows = [row for row in paper if row['group'] == 'supplemental']
-  assert [row['observers'] for row in rows] == [4, 5, 5]
-  for row, count in zip(rows, correct, strict=True):
-    row['correct'] = count
+  rows = [row for row in paper if row.group == 'supplemental']
+  assert [row.observers for row in rows] == [4, 5, 5]
+  rows = [
+    dataclasses.replace(row, correct=count)
+    for row, count in zip(rows, correct, strict=True)
+  ]
   line = suite_tables.totals(rows)[0]
   assert line.endswith(f'; {said}')
 
@@ -93,7 +106,7 @@ def test_an_interval_of_messages_is_never_without_width(
 def test_broadcasts_with_one_share_have_no_interval_and_say_why(
   paper: list[Row],
 ) -> None:
-  row = next(row for row in paper if row['case'] == 'span-45')
+  row = next(row for row in paper if row.case == 'span-45')
   line = suite_tables.totals([row])[0]
   assert line.startswith('messages correct: 1/3 (33.33%)')
   assert line.endswith('; no interval: every broadcast has the same share')
@@ -106,6 +119,16 @@ def test_groups_have_tables_of_their_own_in_order(paper: list[Row]) -> None:
   assert 'differs' not in report
   assert report.endswith(suite_tables.CAVEAT)
   assert report.count('deterministic matrix is descriptive') == 1
+
+
+def test_groups_that_stand_mixed_are_not_split(paper: list[Row]) -> None:
+  mixed = sorted(paper, key=lambda row: row.case)
+  for report in (
+    suite_tables.report(mixed), suite_tables.compare(mixed, paper, ('a', 'b')),
+  ):  # fmt: skip
+    for group in ('standard', 'supplemental', 'controls'):
+      heads = re.findall(rf'^{group}(?::|, broadc)', report, re.MULTILINE)
+      assert len(heads) == 1
 
 
 @pytest.mark.parametrize(
@@ -125,10 +148,13 @@ def test_a_row_has_ours_beside_the_papers(
 
 
 def test_a_row_unlike_the_papers_says_so_and_why(paper: list[Row]) -> None:
-  row = next(each for each in paper if each['case'] == 'span-15')
-  row |= {'correct': 2, 'passed': False}
-  row['outcomes'][2]['failures'] = ['message: none, START support lost', 'hold']
-  report = suite_tables.report(paper)
+  (row,) = [each for each in paper if each.case == 'span-15']
+  *others, last = row.outcomes
+  last = failing(last, 'message: none, START support lost', 'hold')
+  worse = changed(
+    paper, 'span-15', correct=2, passed=False, outcomes=(*others, last)
+  )
+  report = suite_tables.report(worse)
   expected = ['3', '2/3', '3/3', 'Fail', 'Pass', 'differs']
   assert cells(report, 'Half-span 15 deg')[1:] == expected
   assert report.count('differs') == 1
@@ -142,16 +168,14 @@ def test_a_row_unlike_the_papers_says_so_and_why(paper: list[Row]) -> None:
 def test_a_right_message_in_a_failed_group_is_a_difference(
   paper: list[Row],
 ) -> None:
-  paper[0]['passed'] = False
-  report = suite_tables.report(paper)
+  report = suite_tables.report(changed(paper, 'default', passed=False))
   expected = ['3', '3/3', '3/3', 'Fail', 'Pass', 'differs']
   assert cells(report, 'Default, forward')[1:] == expected
 
 
 def test_nothing_published_leaves_dashes(paper: list[Row]) -> None:
-  for row in paper:
-    row['published'] = None
-  report = suite_tables.report(paper)
+  rows = [dataclasses.replace(row, published=None) for row in paper]
+  report = suite_tables.report(rows)
   assert cells(report, 'Half-span 45 deg')[1:] == ['3', '1/3', '-', 'Fail', '-']
   assert 'differs' not in report
   assert ', paper' not in report
@@ -160,16 +184,17 @@ def test_nothing_published_leaves_dashes(paper: list[Row]) -> None:
 @pytest.fixture
 def worse(paper: list[Row]) -> list[Row]:
   """Six standard broadcasts more that fail, and one that passes instead."""
-  rows = copy.deepcopy(paper)
-  passing = [row for row in rows if row['passed']]
-  for row in passing[:6]:
-    row |= {'correct': row['correct'] - 1, 'passed': False}
-    row['outcomes'][0]['failures'] = ['message: none']
-  (near,) = [row for row in rows if row['case'] == 'distance-1-0']
-  near |= {'correct': 3, 'passed': True}
-  for outcome in near['outcomes']:
-    outcome['failures'] = []
-  return rows
+  rows = paper
+  for row in [row for row in paper if row.passed][:6]:
+    first, *others = row.outcomes
+    outcomes = failing(first, 'message: none'), *others
+    correct = row.correct - 1
+    rows = changed(
+      rows, row.case, correct=correct, passed=False, outcomes=outcomes
+    )
+  (near,) = [row for row in rows if row.case == 'distance-1-0']
+  outcomes = tuple(map(failing, near.outcomes))
+  return changed(rows, near.case, correct=3, passed=True, outcomes=outcomes)
 
 
 def test_two_suites_stand_side_by_side_paired_by_case(

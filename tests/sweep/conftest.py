@@ -14,17 +14,18 @@ from waggle_tasks.experiments.episodes import evaluator
 from waggle_tasks.experiments.episodes import rollout as rollout_lib
 from waggle_tasks.experiments.record import scenario_fields, verdicts
 from waggle_tasks.experiments.studies import (
+  case_rows,
   pool,
+  runner,
   sweep_cases,
   sweep_flight,
-  sweep_results,
-  sweep_runner,
+  sweep_study,
 )
 
 # What becomes of an observer of a case, by its number from 1; all is well
 # where it says nothing.
-Fate = Callable[[sweep_cases.Case, int], dict[str, object]]
-Row = dict[str, object]
+Fate = Callable[[sweep_cases.Sample, int], dict[str, object]]
+Row = case_rows.SweepRow
 Waggle = Callable[..., subprocess.CompletedProcess[str]]
 
 # Nothing is sent, so that a second is enough.
@@ -36,13 +37,13 @@ UNEQUAL = {'provenance.json', 'journal.jsonl', '.lock'}
 
 def _cases(
   *grid: str, repeats: int = 1, **base: object
-) -> tuple[sweep_cases.Case, ...]:
+) -> tuple[sweep_cases.Sample, ...]:
   return sweep_cases.cases(
     sweep_cases.grid(grid), scenario_fields.defaults() | base, repeats
   )
 
 
-def _row(case: sweep_cases.Case, fate: Fate, identity: str) -> Row:
+def _row(case: sweep_cases.Sample, fate: Fate, identity: str) -> Row:
   names = [f'observer_{n + 1}' for n in range(case.scene.observers)]
   outcomes = []
   for number, name in enumerate(names, 1):
@@ -57,7 +58,7 @@ def _row(case: sweep_cases.Case, fate: Fate, identity: str) -> Row:
   return sweep_flight.row(case, 'view_bank', identity, rollout, verdict)
 
 
-def _well(case: sweep_cases.Case, number: int) -> dict[str, object]:
+def _well(case: sweep_cases.Sample, number: int) -> dict[str, object]:
   del case, number
   return {}
 
@@ -78,7 +79,7 @@ def make() -> types.SimpleNamespace:
 def _told(jobs: Sequence[pool.Job]) -> Iterator[pool.Done]:
   """Flies nothing: every case ends well."""
   for job in jobs:
-    case, _, identity = job.arguments
+    case, _, identity, _ = job.arguments
     yield pool.Done(job, _row(case, _well, identity))
 
 
@@ -91,15 +92,14 @@ class Sweep:
   repeats: int = 1
 
   @property
-  def cases(self) -> tuple[sweep_cases.Case, ...]:
+  def cases(self) -> tuple[sweep_cases.Sample, ...]:
     """Its cases."""
     return _cases(*self.grid, repeats=self.repeats, **BRIEF)
 
-  def run(self, engine: sweep_runner.Engine = _told) -> list[Row]:
+  def run(self, engine: pool.Engine = _told) -> list[Row]:
     """Flies what is missing; by default without flying."""
-    return sweep_runner.run(
-      self.cases, 'view_bank', self.folder, engine, 'waggle sweep'
-    )
+    study = sweep_study.Sweep(self.cases, 'view_bank')
+    return runner.run(study, self.folder, engine, 'waggle sweep')
 
   def fly(self, workers: int = 1) -> list[Row]:
     """Flies what is missing in worker processes."""
@@ -116,7 +116,7 @@ class Sweep:
   @property
   def journal(self) -> pathlib.Path:
     """Its journal."""
-    return self.folder / sweep_results.JOURNAL
+    return self.folder / case_rows.JOURNAL
 
 
 @pytest.fixture

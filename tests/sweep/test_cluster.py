@@ -39,14 +39,16 @@ needs_ipv6 = pytest.mark.skipif(not IPV6, reason='needs IPv6')
 FLY = """
 import functools, pathlib, sys
 from waggle_tasks.experiments.record import scenario_fields
-from waggle_tasks.experiments.studies import cluster, sweep_cases, sweep_runner
+from waggle_tasks.experiments.studies import (
+  cluster, runner, sweep_cases, sweep_study)
 receiver, folder, scheduler, *grid = sys.argv[1:]
 base = scenario_fields.defaults() | {
   'control': 'no_send', 'duration_s': 1.0, 'observers': 1}
 engine = functools.partial(cluster.run, place=cluster.find(scheduler))
-sweep_runner.run(
-  sweep_cases.cases(sweep_cases.grid(grid), base, 1), receiver,
-  pathlib.Path(folder), engine, 'waggle sweep')
+cases = sweep_cases.cases(sweep_cases.grid(grid), base, 1)
+runner.run(
+  sweep_study.Sweep(cases, receiver), pathlib.Path(folder), engine,
+  'waggle sweep')
 """
 
 
@@ -119,6 +121,35 @@ def fly(*words: str, **more: object) -> subprocess.CompletedProcess[str]:
     [sys.executable, '-c', FLY, *words],
     capture_output=True, text=True, check=False, **more,
   )  # fmt: skip
+
+
+@needs_dask
+def test_a_suite_leaves_the_same_run_folders_from_a_cluster(
+  scheduler: pathlib.Path,
+  waggle: Callable[..., subprocess.CompletedProcess[str]],
+  tmp_path: pathlib.Path,
+  wait_until: Callable[..., None],
+) -> None:
+  address = listening(scheduler, wait_until)
+  case = {'name': 'still', 'task': 'no_send', 'duration_s': 0.2}
+  (tmp_path / 'own.json').write_text(json.dumps([case]))
+  left = []
+  for engine in ('--workers=1', f'--scheduler={address}'):
+    done = waggle('suite', '--suite=own.json', engine, cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    folder = (tmp_path / 'runs' / 'own-klt').rename(tmp_path / f'{len(left)}')
+    left.append(
+      {
+        path.relative_to(folder): path.read_bytes()
+        for path in folder.rglob('*')
+        # They hold the wall clock, or the name of their folder.
+        if path.is_file() and path.name not in ('provenance.json', 'seal.json')
+        if path != folder / 'index.html'
+      }
+    )
+  assert f'with the cluster of {address}' in done.stdout
+  assert left[0] == left[1]
+  assert pathlib.Path('cases', 'still', 'events.jsonl') in left[1]
 
 
 OWN = """
@@ -394,13 +425,25 @@ def _work(
   return cluster._work(job, (digest, versions))
 
 
+def test_what_a_job_leaves_in_its_folder_comes_with_its_result(
+  tmp_path: pathlib.Path,
+) -> None:
+  def work(report: object, text: str, draft: pathlib.Path) -> None:
+    draft.mkdir()
+    (draft / 'said').write_text(text)
+
+  job = pool.Job('a', work, ('hello',), draft=tmp_path / 'a')
+  assert cluster._done(job) == (None, {'said': b'hello'})
+  assert not (tmp_path / 'a').exists()
+
+
 @pytest.fixture
 def digest() -> str:
   return provenance.source_digest(provenance.source_hashes())
 
 
 def test_a_worker_of_the_same_sources_works(digest: str) -> None:
-  assert _work(digest, provenance.versions()) == 3
+  assert _work(digest, provenance.versions()) == (3, {})
 
 
 def test_a_worker_of_other_sources_is_refused(digest: str) -> None:
@@ -430,7 +473,7 @@ def test_a_worker_of_another_receiver_is_refused(
 
   error = 'must have the modules of the client: kept_receiver is missing on'
   path.write_text('# first')
-  assert work() == 3
+  assert work() == (3, {})
   path.write_text('# edited, but the worker still has what it imported')
   with pytest.raises(cluster.ClusterError, match=error):
     work()

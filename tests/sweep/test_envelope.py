@@ -1,5 +1,6 @@
 """Cells, maps, limits and fits of made results."""
 
+import dataclasses
 import math
 import pathlib
 import re
@@ -17,7 +18,7 @@ from waggle_tasks.experiments.results import (
   sweep_fit,
   sweep_tables,
 )
-from waggle_tasks.experiments.studies import sweep_results
+from waggle_tasks.experiments.studies import case_rows
 
 SILENT = {
   'decoded': None,
@@ -35,13 +36,13 @@ def far(case: object, number: int) -> dict[str, object]:
 
 
 @pytest.fixture(scope='module')
-def rows(make: object) -> list[dict[str, object]]:
+def rows(make: object) -> list[case_rows.SweepRow]:
   """Sixty exposures, eight of which see nothing."""
   return make.rows(*GRID, repeats=5, fate=far, observers=1, payload='random')
 
 
 def test_distance_goes_down_and_angle_across_and_noise_has_maps(
-  rows: list[dict[str, object]],
+  rows: list[case_rows.SweepRow],
 ) -> None:
   maps = envelope.panels(rows)
   assert [each.fixed for each in maps] == [
@@ -101,7 +102,7 @@ def test_sweeps_are_put_together_by_what_differs_between_them(
 
 def test_receivers_are_a_factor_when_they_differ(make: object) -> None:
   one = make.rows('distance_m=1,2', observers=1)
-  two = [{**row, 'receiver': 'klt'} for row in one]
+  two = [dataclasses.replace(row, receiver='klt') for row in one]
   assert envelope.factors([*one, *two]) == ['receiver', 'distance_m']
 
 
@@ -127,7 +128,7 @@ def test_a_message_where_nothing_was_sent_is_wrong(make: object) -> None:
 
 
 def test_the_report_says_what_is_in_the_cells(
-  rows: list[dict[str, object]],
+  rows: list[case_rows.SweepRow],
 ) -> None:
   text = sweep_tables.report(rows, None)
   first = text.split('\n\n')[0].splitlines()
@@ -147,7 +148,7 @@ def test_the_report_says_what_is_in_the_cells(
   assert 'share its performer' not in text
 
 
-def test_long_lists_are_cut_where_asked(rows: list[dict[str, object]]) -> None:
+def test_long_lists_are_cut_where_asked(rows: list[case_rows.SweepRow]) -> None:
   text = sweep_tables.report(rows, 3)
   assert text.count('message: none, motion 3 unknown') == 3
   assert text.endswith('  and 5 more')
@@ -270,13 +271,13 @@ def test_axes_have_units(factor: str | None, title: str) -> None:
 
 
 def test_pictures_and_page_are_drawn_the_same_twice(
-  rows: list[dict[str, object]], tmp_path: pathlib.Path
+  rows: list[case_rows.SweepRow], tmp_path: pathlib.Path
 ) -> None:
   pytest.importorskip('matplotlib')
   for name in 'ab':
     sweep_output.write(tmp_path / name, rows)
   files = {path.name for path in (tmp_path / 'a').iterdir()}
-  assert files == {'summary.txt', 'index.html', *sweep_results.FIGURES}
+  assert files == {'summary.txt', 'index.html', *case_rows.FIGURES}
   for name in files - {'index.html'}:
     one, other = ((tmp_path / each / name).read_bytes() for each in 'ab')
     assert one == other

@@ -1,6 +1,7 @@
 """A journal keeps every whole line, whatever ends its writer."""
 
 from collections.abc import Iterator
+import fcntl
 import os
 import pathlib
 import resource
@@ -24,6 +25,18 @@ def path(tmp_path: pathlib.Path) -> pathlib.Path:
 
 def test_what_was_written_is_read(path: pathlib.Path) -> None:
   assert journal.read(path) == ROWS
+
+
+def test_a_line_reaches_the_disk_where_fsync_is_not_enough(
+  path: pathlib.Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+  asked = []
+  monkeypatch.setattr(fcntl, 'F_FULLFSYNC', 51, raising=False)
+  monkeypatch.setattr(fcntl, 'fcntl', lambda _, what: asked.append(what))
+  with journal.opened(path) as log:
+    log.append(ROWS[0])
+  assert asked == [51]
+  assert journal.read(path) == [*ROWS, ROWS[0]]
 
 
 def test_no_file_is_no_line(tmp_path: pathlib.Path) -> None:

@@ -6,11 +6,11 @@ import pathlib
 import re
 import shutil
 import subprocess
-import sys
 
 import pytest
 
 from waggle_tasks.experiments.results import figures
+from waggle_tasks.experiments.studies import case_rows
 
 Waggle = Callable[..., subprocess.CompletedProcess[str]]
 BRIEF = ('--control=no_send', '--duration_s=0.04', '--observers=1')
@@ -67,7 +67,8 @@ def test_several_sweeps_make_one_map_in_a_new_folder(
 ) -> None:
   for name, sigma in (('a', 0.0), ('b', 5.0)):
     rows = make.rows('distance_m=1,2', observers=1, noise_sigma=sigma)
-    text = ''.join(f'{json.dumps(row)}\n' for row in rows)
+    tables = map(case_rows.table, rows)
+    text = ''.join(f'{json.dumps(table)}\n' for table in tables)
     (tmp_path / name).mkdir()
     (tmp_path / name / 'results.jsonl').write_text(text)
   done = here('sweep', '--summary', 'a', 'b', '--output=both')
@@ -85,32 +86,15 @@ def test_a_wrong_message_is_exit_status_1(
   here: Waggle, tmp_path: pathlib.Path, make: object
 ) -> None:
   rows = make.rows(observers=1, fate=lambda c, n: {'decoded': '111111'})
-  (tmp_path / 'results.jsonl').write_text(json.dumps(rows[0]) + '\n')
+  (tmp_path / 'results.jsonl').write_text(
+    json.dumps(case_rows.table(rows[0])) + '\n'
+  )
   done = here('sweep', '--summary', '.')
   assert done.returncode == 1, done.stderr
   assert 'wrong messages: 1 in 1 exposures; at most 100.000%' in done.stdout
 
 
-# Bad input. Python and dm_control take a second to start, so that one process
-# takes every line; it forgets the flags in between.
-SCRIPT = """
-import contextlib, io, json, os, sys
-from absl import flags
-from waggle_tasks.experiments import launch
-
-answers = []
-for argv in json.load(sys.stdin):
-  for name in flags.FLAGS:
-    flags.FLAGS[name].unparse()
-  said = io.StringIO()
-  with contextlib.redirect_stderr(said), contextlib.redirect_stdout(said):
-    try:
-      status = launch.run('waggle_tasks.experiments.sweep', ['sweep', *argv])
-    except Exception as error:
-      status = repr(error)
-  answers.append((status, said.getvalue(), sorted(os.listdir())))
-print(json.dumps(answers))
-"""
+# Bad input.
 FLAGS = {
   '--grid=distanc_m=1': '`grid` must be one of .* Did you mean distance_m',
   '--grid=distance_m=1,far': '`distance_m` must be of type float',
@@ -133,18 +117,13 @@ FLAGS = {
 
 @pytest.fixture(scope='module')
 def answers(
-  tmp_path_factory: pytest.TempPathFactory,
+  tmp_path_factory: pytest.TempPathFactory, ask: Callable[..., list]
 ) -> dict[str, tuple[int | str, str, list[str]]]:
   """Exit status, output and what is left of each line of `FLAGS`."""
-  done = subprocess.run(
-    [sys.executable, '-c', SCRIPT],
-    input=json.dumps([[*BRIEF, *line.split()] for line in FLAGS]),
-    capture_output=True,
-    text=True,
-    check=True,
-    cwd=tmp_path_factory.mktemp('bad'),
+  lines = [['sweep', *BRIEF, *line.split()] for line in FLAGS]
+  return dict(
+    zip(FLAGS, ask(lines, tmp_path_factory.mktemp('bad')), strict=True)
   )
-  return dict(zip(FLAGS, json.loads(done.stdout), strict=True))
 
 
 @pytest.mark.parametrize('line', FLAGS)

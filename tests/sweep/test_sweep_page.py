@@ -8,7 +8,7 @@ import pytest
 from waggle_tasks.experiments.pages import heat_map, sweep_output, sweep_page
 from waggle_tasks.experiments.record import provenance, scenario_fields
 from waggle_tasks.experiments.results import envelope, figures
-from waggle_tasks.experiments.studies import sweep_results
+from waggle_tasks.experiments.studies import case_rows
 
 ORIGIN = {
   'command': 'waggle sweep --grid=distance_m=0.6,1.3',
@@ -29,7 +29,7 @@ def fate(case: object, number: int) -> dict[str, object]:
 
 
 @pytest.fixture(scope='module')
-def rows(make: object) -> list[dict[str, object]]:
+def rows(make: object) -> list[case_rows.SweepRow]:
   """Two of twelve are wrong."""
   return make.rows(
     'distance_m=0.6,1.3', 'bearing_deg=0,30,60', repeats=2, fate=fate,
@@ -38,7 +38,7 @@ def rows(make: object) -> list[dict[str, object]]:
 
 
 @pytest.fixture(scope='module')
-def page(rows: list[dict[str, object]]) -> str:
+def page(rows: list[case_rows.SweepRow]) -> str:
   return sweep_page.draw(rows, 'mine', ORIGIN)
 
 
@@ -55,7 +55,7 @@ def test_the_headline_numbers_come_first(page: str) -> None:
 
 
 def test_the_map_has_a_rectangle_and_its_count_for_each_cell(
-  rows: list[dict[str, object]],
+  rows: list[case_rows.SweepRow],
 ) -> None:
   (panel,) = envelope.panels(rows)
   drawn = heat_map.draw(panel)
@@ -95,17 +95,17 @@ def test_a_case_that_several_observers_failed_has_one_command(
 
 
 def test_a_failure_has_its_reason_and_the_command_that_repeats_it(
-  page: str, rows: list[dict[str, object]]
+  page: str, rows: list[case_rows.SweepRow]
 ) -> None:
   assert 'message: read 111111, sent &lt;000010&gt;' in page
   commands = re.findall('<pre>(waggle broadcast .*?)</pre>', page)
-  wrong = [row for row in rows if row['outcomes'][0]['wrong']]
+  wrong = [row for row in rows if row.outcomes[0].wrong]
   for command, row in zip(commands, wrong, strict=True):
     _, _, receiver, *given = command.split()
     assert receiver == '--receiver=view_bank'
     pairs = [flag.removeprefix('--').split('=') for flag in given]
     read = {name: scenario_fields.parse(name, text) for name, text in pairs}
-    assert scenario_fields.defaults() | read == row['scenario']
+    assert scenario_fields.defaults() | read == row.scenario
 
 
 def test_the_page_says_what_made_it(page: str) -> None:
@@ -126,7 +126,7 @@ def test_a_perfect_sweep_has_nothing_that_failed(make: object) -> None:
 
 
 def test_without_matplotlib_all_but_the_pictures_is_written(
-  rows: list[dict[str, object]],
+  rows: list[case_rows.SweepRow],
   tmp_path: pathlib.Path,
   monkeypatch: pytest.MonkeyPatch,
 ) -> None:
@@ -144,5 +144,5 @@ def test_a_whole_sweeps_page_holds_its_provenance(
   page = sweep_output.write(told.folder, rows).read_text(encoding='utf-8')
   digest = provenance.source_digest(provenance.source_hashes())
   assert digest in page
-  for name in ('index.html', 'summary.txt', *sweep_results.FIGURES):
+  for name in ('index.html', 'summary.txt', *case_rows.FIGURES):
     (told.folder / name).unlink(missing_ok=True)

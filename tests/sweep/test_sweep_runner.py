@@ -19,7 +19,7 @@ from waggle_tasks.experiments.record import (
   scenario_fields,
 )
 from waggle_tasks.experiments.results import envelope, sweep_tables
-from waggle_tasks.experiments.studies import pool, sweep_results, sweep_runner
+from waggle_tasks.experiments.studies import case_rows, pool
 
 Jobs = Sequence[pool.Job]
 
@@ -28,7 +28,7 @@ class Ended(Exception):  # noqa: N818
   """Something that ends a sweep."""
 
 
-def ending(after: int, engine: sweep_runner.Engine) -> sweep_runner.Engine:
+def ending(after: int, engine: pool.Engine) -> pool.Engine:
   """An engine that ends after so many cases."""
 
   def run(jobs: Jobs) -> Iterator[pool.Done]:
@@ -41,12 +41,12 @@ def ending(after: int, engine: sweep_runner.Engine) -> sweep_runner.Engine:
 
 
 @pytest.fixture
-def engine(make: object) -> sweep_runner.Engine:
+def engine(make: object) -> pool.Engine:
   """Flies nothing: every case ends well."""
 
   def run(jobs: Jobs) -> Iterator[pool.Done]:
     for job in jobs:
-      case, _, identity = job.arguments
+      case, _, identity, _ = job.arguments
       yield pool.Done(job, make.row(case, make.well, identity))
 
   return run
@@ -56,25 +56,25 @@ def test_a_sweep_leaves_its_results_and_no_run_folders(flown: object) -> None:
   assert {path.name for path in flown.folder.iterdir()} == {
     '.lock', 'journal.jsonl', 'results.jsonl', 'results.csv', 'provenance.json',
   }  # fmt: skip
-  rows = sweep_results.read(flown.folder)
-  assert [row['case'] for row in rows] == [
+  rows = case_rows.read_sweep(flown.folder)
+  assert [row.case for row in rows] == [
     'distance_m=0.8 bearing_deg=0.0 #0', 'distance_m=0.8 bearing_deg=40.0 #0',
     'distance_m=1.3 bearing_deg=0.0 #0', 'distance_m=1.3 bearing_deg=40.0 #0',
   ]  # fmt: skip
   for row, case in zip(rows, flown.cases, strict=True):
-    assert row['cell'] == case.cell
-    assert row['scenario'] == case.values
-    assert scenario_fields.make(row['scenario']) == case.scene
-    assert row['receiver'] == 'view_bank'
-    assert row['simulated_s'] == 1.0
-    assert re.fullmatch('[0-9a-f]{64}', row['identity'])
-    (outcome,) = row['outcomes']
-    assert outcome['true_distance_m'] == case.cell['distance_m']
-    assert outcome['true_angle_deg'] == case.cell['bearing_deg']
-    assert outcome['right']
-    assert not outcome['wrong']
-    assert not outcome['unauthorised']
-    assert (outcome['expected'], outcome['decoded']) == (None, None)
+    assert row.cell == case.cell
+    assert row.scenario == case.values
+    assert scenario_fields.make(row.scenario) == case.scene
+    assert row.receiver == 'view_bank'
+    assert row.simulated_s == 1.0
+    assert re.fullmatch('[0-9a-f]{64}', row.identity)
+    (outcome,) = row.outcomes
+    assert outcome.true_distance_m == case.cell['distance_m']
+    assert outcome.true_angle_deg == case.cell['bearing_deg']
+    assert outcome.right
+    assert not outcome.wrong
+    assert not outcome.unauthorised
+    assert (outcome.expected, outcome.decoded) == (None, None)
 
 
 def test_the_csv_has_every_field_of_the_scenario(flown: object) -> None:
@@ -94,7 +94,7 @@ def test_the_sweep_says_what_made_it(flown: object) -> None:
   assert origin['command'] == 'waggle sweep'
   assert origin['sources'] == provenance.source_hashes()
   assert origin['versions'] == provenance.versions()
-  assert origin['renderer'] == sweep_results.read(flown.folder)[0]['renderer']
+  assert origin['renderer'] == case_rows.read_sweep(flown.folder)[0].renderer
   assert origin['began'] <= origin['ended']
 
 
@@ -107,12 +107,12 @@ def test_a_second_run_flies_nothing_and_changes_nothing(told: object) -> None:
   before = {p.name: p.read_bytes() for p in told.folder.iterdir()}
   rows = told.run(ending(0, lambda jobs: [*jobs]))
   assert {p.name: p.read_bytes() for p in told.folder.iterdir()} == before
-  assert rows == sweep_results.read(told.folder)
+  assert rows == case_rows.read_sweep(told.folder)
 
 
 @pytest.mark.parametrize('after', [0, 1, 3])
 def test_a_sweep_ended_after_some_cases_goes_on_there(
-  sweep: object, told: object, engine: sweep_runner.Engine, after: int
+  sweep: object, told: object, engine: pool.Engine, after: int
 ) -> None:
   with pytest.raises(Ended):
     sweep.run(ending(after, engine))
@@ -130,7 +130,7 @@ def test_a_sweep_ended_after_some_cases_goes_on_there(
 
 
 def test_a_line_torn_by_the_end_is_flown_again(
-  sweep: object, told: object, engine: sweep_runner.Engine
+  sweep: object, told: object, engine: pool.Engine
 ) -> None:
   with pytest.raises(Ended):
     sweep.run(ending(3, engine))
@@ -152,7 +152,7 @@ def test_tables_that_were_touched_are_written_again(
 
 
 def test_more_repeats_keep_what_was_flown(
-  sweep: object, engine: sweep_runner.Engine
+  sweep: object, engine: pool.Engine
 ) -> None:
   sweep.run()
   more = dataclasses.replace(sweep, repeats=3)
@@ -170,7 +170,7 @@ def test_more_repeats_keep_what_was_flown(
 
 
 def test_results_of_other_sources_are_flown_anew(
-  sweep: object, engine: sweep_runner.Engine, monkeypatch: pytest.MonkeyPatch
+  sweep: object, engine: pool.Engine, monkeypatch: pytest.MonkeyPatch
 ) -> None:
   sweep.run()
   here = provenance.deciding_hashes()
@@ -202,7 +202,7 @@ def test_a_folder_of_something_else_is_refused(sweep: object) -> None:
 
 def test_the_bar_counts_cases_and_seconds(
   sweep: object,
-  engine: sweep_runner.Engine,
+  engine: pool.Engine,
   capsys: pytest.CaptureFixture[str],
 ) -> None:
   with pytest.raises(Ended):
@@ -218,11 +218,11 @@ def test_the_bar_counts_cases_and_seconds(
 
 
 def test_an_unfinished_sweep_is_read_from_its_journal(
-  sweep: object, engine: sweep_runner.Engine
+  sweep: object, engine: pool.Engine
 ) -> None:
   with pytest.raises(Ended):
     sweep.run(ending(2, engine))
-  assert len(sweep_results.read(sweep.folder)) == 2
+  assert len(case_rows.read_sweep(sweep.folder)) == 2
 
 
 @pytest.mark.parametrize(
@@ -231,7 +231,7 @@ def test_an_unfinished_sweep_is_read_from_its_journal(
     (None, 'holds no results of a sweep'),
     ('', 'holds no results of a sweep'),
     ('{"case": ', 'cannot be read'),
-    ('3', 'line 1, is damaged: `row` must be a table of Row: got 3'),
+    ('3', 'line 1, is damaged: `row` must be a table of SweepRow: got 3'),
     (json.dumps({'case': 'a', 'group': 'own'}), 'does not know; .*`row.group`'),
     (json.dumps({'case': 'a'}), 'is damaged: `row.cell` must be given'),
   ],
@@ -242,20 +242,24 @@ def test_what_holds_no_results_is_refused(
   if text is not None:
     (tmp_path / 'results.jsonl').write_text(text)
   with pytest.raises(archive.ArchiveError, match=error):
-    sweep_results.read(tmp_path)
+    case_rows.read_sweep(tmp_path)
 
 
-def old(row: dict[str, object]) -> dict[str, object]:
+def old(row: case_rows.SweepRow) -> dict[str, object]:
   """A row as a program wrote it that knew less."""
-  scene = dict(row['scenario'])
-  del scene['clock_rate'], scene['late_frames']
-  kept = {name: each for name, each in row.items() if name != 'format'}
-  return kept | {'scenario': scene}
+  table = case_rows.table(row)
+  del table['scenario']['clock_rate'], table['scenario']['late_frames']
+  del table['format']
+  return table
 
 
 def put(folder: pathlib.Path, rows: Sequence[object]) -> pathlib.Path:
   folder.mkdir()
-  text = ''.join(f'{json.dumps(row)}\n' for row in rows)
+  tables = [
+    case_rows.table(row) if isinstance(row, case_rows.SweepRow) else row
+    for row in rows
+  ]
+  text = ''.join(f'{json.dumps(table)}\n' for table in tables)
   (folder / 'results.jsonl').write_text(text)
   return folder
 
@@ -267,8 +271,8 @@ def test_an_old_sweep_and_a_new_one_make_one_map(
   before = put(tmp_path / 'old', [old(row) for row in rows])
   after = make.rows('distance_m=0.8,1.3', clock_rate=0.1)
   both = [
-    *sweep_results.read(before),
-    *sweep_results.read(put(tmp_path / 'new', after)),
+    *case_rows.read_sweep(before),
+    *case_rows.read_sweep(put(tmp_path / 'new', after)),
   ]
   assert envelope.factors(both) == ['distance_m', 'clock_rate']
   first = sweep_tables.report(both, None).splitlines()[0]
@@ -279,10 +283,10 @@ def test_a_scenario_that_is_not_known_is_refused_with_the_field(
   make: object, tmp_path: pathlib.Path
 ) -> None:
   (row,) = make.rows()
-  row['scenario']['wind_mps'] = 3.0
+  row.scenario['wind_mps'] = 3.0
   error = 'does not know: a scenario with `wind_mps`'
   with pytest.raises(archive.ArchiveError, match=error):
-    sweep_results.read(put(tmp_path / 'new', [row]))
+    case_rows.read_sweep(put(tmp_path / 'new', [row]))
 
 
 @pytest.mark.parametrize(
@@ -303,7 +307,7 @@ def test_a_row_of_something_else_says_what_is_wrong(
 ) -> None:
   (row,) = make.rows()
   with pytest.raises(errors.WaggleError, match=error):
-    sweep_results.read(put(tmp_path / 'new', [row | change]))
+    case_rows.read_sweep(put(tmp_path / 'new', [case_rows.table(row) | change]))
 
 
 def test_a_journal_of_a_newer_program_is_refused(
@@ -311,7 +315,7 @@ def test_a_journal_of_a_newer_program_is_refused(
 ) -> None:
   sweep.folder.mkdir()
   with journal.opened(sweep.journal) as log:
-    log.append(make.rows()[0] | {'format': 3})
+    log.append(case_rows.table(make.rows()[0]) | {'format': 3})
   error = 'journal.jsonl must be 1 to 2 for this program'
   with pytest.raises(encoding.FormatError, match=error):
     sweep.run()

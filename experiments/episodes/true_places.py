@@ -9,7 +9,7 @@ from waggle_tasks.entities import observer
 from waggle_tasks.protocol import camera
 
 
-class Sight:
+class TruePlaces:
   """Notes the performer's place in every picture of an episode."""
 
   def __init__(

@@ -9,6 +9,7 @@ beside one drawn in a single pass at twice the size and averaged over areas.
 from collections.abc import Callable, Iterator, Sequence
 import contextlib
 import dataclasses
+import sys
 
 import cv2
 from dm_control import composer, mjcf
@@ -16,9 +17,11 @@ import numpy as np
 
 from waggle_tasks import appearance, registry, scenario
 from waggle_tasks.entities import crazyflie, renderer
+from waggle_tasks.experiments.machine import table
 from waggle_tasks.protocol import camera as camera_lib
 
 MAX_LEVELS = 1  # Most grey levels by which the two may differ.
+_PIXELS = camera_lib.Camera.columns * camera_lib.Camera.rows
 _MAX_OBSERVERS = 8  # One of them looks at the other vehicles, up to eight.
 _STEPS = 20  # Changes of each scene.
 _DEPTHS_M = (0.08, 6.0)
@@ -241,3 +244,53 @@ def _single_pass(physics: mjcf.Physics, camera: int) -> np.ndarray:
   width, height = _LENS.size
   large = physics.render(2 * height, 2 * width, int(camera))
   return cv2.resize(large, (width, height), interpolation=cv2.INTER_AREA)
+
+
+def report(found: Sequence[Comparison]) -> str:
+  """How pictures differ, by what was changed before them."""
+  header = (
+    'changed before', 'pictures', 'not equal', 'pixels', 'grey levels',
+    'pixels', 'grey levels',
+  )  # fmt: skip
+  names = dict.fromkeys(each.change for each in found)
+  rows = [
+    _row(name.replace('_', ' '), [e for e in found if e.change == name])
+    for name in names
+  ]
+  rows.append(_row('all of them', found))
+  worst = worst_levels(found)
+  share = sum(e.single_pass.pixels for e in found) / (len(found) * _PIXELS)
+  return '\n'.join(
+    [
+      'Incremental against full render, then full render against a single pass',
+      '',
+      table.render(header, rows),
+      '',
+      f'Incremental and full render differ by {worst} grey levels at most in'
+      f' {len(found)} pictures:',
+      f'{_verdict(worst)}, {MAX_LEVELS} is allowed. {share:.4%} of'
+      ' pixels differ from a single pass.',
+    ]
+  )
+
+
+def worst_levels(found: Sequence[Comparison]) -> int:
+  """The largest difference between incremental and full pictures."""
+  return max(each.incremental.levels for each in found)
+
+
+def _verdict(levels: int) -> str:
+  return 'the same' if levels <= MAX_LEVELS else 'NOT the same'
+
+
+def _row(name: str, found: Sequence[Comparison]) -> Sequence[str]:
+  cells = [sum(each.incremental.pixels > 0 for each in found)]
+  for kind in ('incremental', 'single_pass'):
+    differences = [getattr(each, kind) for each in found]
+    cells.append(sum(each.pixels for each in differences))
+    cells.append(max(each.levels for each in differences))
+  return name, str(len(found)), *map(str, cells)
+
+
+if __name__ == '__main__':
+  sys.stdout.write(f'{report(list(compare(scenes=24, seed=0)))}\n')

@@ -1,4 +1,4 @@
-"""What `waggle bench` can do: measure, and check."""
+"""What `waggle bench` can do: measure, and compare event logs."""
 
 from collections.abc import Mapping, Sequence
 import dataclasses
@@ -8,27 +8,19 @@ from typing import Any
 import tqdm
 
 from waggle_tasks import registry, suites
-from waggle_tasks.experiments.bench_parts import (
-  events,
-  findings,
-  processes,
-  report,
-  sameness,
-  sections,
-)
-from waggle_tasks.experiments.machine import gl
+from waggle_tasks.experiments.bench_parts import events, sections, tables
+from waggle_tasks.experiments.machine import cores, gl
 from waggle_tasks.experiments.record import provenance
-from waggle_tasks.protocol import checks
 
 
 @dataclasses.dataclass(frozen=True)
-class Outcome:
+class Answer:
   """What came out.
 
   Attributes:
     text: For people.
     found: For machines, by name.
-    passed: False when a check found a difference.
+    passed: False when event logs differ.
   """
 
   text: str
@@ -40,7 +32,7 @@ def machine() -> dict[str, Any]:
   """What measurements depend on, before they begin."""
   return {
     'renderer': gl.render_once().renderer,
-    'cores': len(processes.cores()),
+    'cores': len(cores.usable()),
     'load': os.getloadavg()[0],
     'versions': provenance.versions(),
   }
@@ -48,7 +40,7 @@ def machine() -> dict[str, Any]:
 
 def measure(
   here: Mapping[str, Any], only: Sequence[str], settings: sections.Settings
-) -> Outcome:
+) -> Answer:
   """Measures parts of the benchmark.
 
   Args:
@@ -69,40 +61,18 @@ def measure(
     f'{here["renderer"]}, {here["cores"]} cores, load {here["load"]:.1f} when'
     f' it began.\nMedians of {settings.repeats}, images and loops by {clock}.'
   )
-  return Outcome(
-    f'{title}\n\n{report.text(results)}',
+  return Answer(
+    f'{title}\n\n{tables.text(results)}',
     {
       'settings': settings,
       'clock': clock,
-      'ratios': report.ratios(results),
+      'ratios': tables.ratios(results),
       'measured': results,
     },
   )
 
 
-def check_pictures(scenes: int, seed: int) -> Outcome:
-  """Compares the incremental camera's pictures with full renders.
-
-  Args:
-    scenes: How many random scenes, 1 to 10,000.
-    seed: Of what is random.
-
-  Raises:
-    BenchError: if a number breaks a rule.
-  """
-  checks.integer('scenes', scenes, 1, 10_000, sections.BenchError)
-  checks.integer('seed', seed, 0, 2**32 - 1, sections.BenchError)
-  found = list(
-    tqdm.tqdm(sameness.compare(scenes, seed), desc='check', unit=' pictures')
-  )
-  return Outcome(
-    findings.pictures(found),
-    {'pictures': found},
-    findings.worst_levels(found) <= sameness.MAX_LEVELS,
-  )
-
-
-def check_events(suite: str | None) -> Outcome:
+def check_events(suite: str | None) -> Answer:
   """Compares event logs with either camera.
 
   Args:
@@ -113,6 +83,6 @@ def check_events(suite: str | None) -> Outcome:
   """
   default = suites.Case('broadcast', 'own', '', registry.find('broadcast'))
   cases = (default,) if suite is None else suites.find(suite)
-  verdicts = [*events.compare(cases, len(processes.cores()))]
-  same = all(each.difference is None for each in verdicts)
-  return Outcome(findings.event_logs(verdicts), {'events': verdicts}, same)
+  logs = [*events.compare(cases, len(cores.usable()))]
+  same = all(each.difference is None for each in logs)
+  return Answer(events.report(logs), {'events': logs}, same)

@@ -4,7 +4,7 @@ Every number is a median over repeats; a ratio is the median of the ratios of
 numbers that were measured one after the other.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 import statistics
 from typing import Any
 
@@ -31,8 +31,8 @@ def _ratio(one: Sequence[float], other: Sequence[float]) -> float:
   return statistics.median(a / b for a, b in pairs)
 
 
-def _number(value: float, digits: int = 2) -> str:
-  return table.number(value, digits)
+def _middle(seconds: Iterable[float], digits: int, scale: float = 1.0) -> str:
+  return table.number(statistics.median(seconds), digits, scale)
 
 
 def _by_observers(found: Sequence[loops.Loop]) -> dict[int, list[float]]:
@@ -54,21 +54,11 @@ def _camera_ratios(found: cameras.Cameras) -> Ratios:
 def _cameras(found: cameras.Cameras) -> str:
   header = ('one 640x480 image', 'ms', 'of the frames', 'images')
   rows = [
-    (
-      name,
-      _number(1e3 * statistics.median(seconds), 3),
-      '',
-      str(found.images[name]),
-    )
+    (name, _middle(seconds, 3, 1e3), '', str(found.images[name]))
     for name, seconds in found.mean_s.items()
   ]
   rows += [
-    (
-      f'  {phase}',
-      _number(1e3 * statistics.median(seconds), 3),
-      f'{found.share[phase]:.0%}',
-      '',
-    )
+    (f'  {phase}', _middle(seconds, 3, 1e3), f'{found.share[phase]:.0%}', '')
     for phase, seconds in found.phase_s.items()
   ]
   return table.render(header, rows)
@@ -81,13 +71,13 @@ def _stages(found: Sequence[Mapping[str, float]]) -> str:
   }
   total_s = sum(median_s.values())
   rest_s = median_s.pop(stages.OTHER)
-  order = sorted(median_s, key=lambda name: median_s[name], reverse=True)
-  shown = {name: median_s[name] for name in order}
-  shown |= {stages.OTHER: rest_s, 'all of it': total_s}
+  shown = sorted(median_s.items(), key=lambda each: -each[1])
   rows = [
-    (name, _number(1e6 * seconds, 0), f'{seconds / total_s:.0%}')
-    for name, seconds in shown.items()
-  ]
+    (name, table.number(seconds, 0, 1e6), f'{seconds / total_s:.0%}')
+    for name, seconds in (
+      *shown, (stages.OTHER, rest_s), ('all of it', total_s),
+    )
+  ]  # fmt: skip
   return table.render(header, rows)
 
 
@@ -95,22 +85,20 @@ def _receiver_ratios(found: Sequence[Mapping[str, Sequence[float]]]) -> Ratios:
   mean_s = {
     name: [statistics.fmean(each[name]) for each in found] for name in found[0]
   }
+  paper_s = mean_s.pop(loops.RECEIVER)
   return {
-    f'{loops.RECEIVER} receiver / {name}': _ratio(
-      mean_s[loops.RECEIVER], seconds
-    )
+    f'{loops.RECEIVER} receiver / {name}': _ratio(paper_s, seconds)
     for name, seconds in mean_s.items()
-    if name != loops.RECEIVER
   }
 
 
 def _receivers(found: Sequence[Mapping[str, Sequence[float]]]) -> str:
   header = ('one image of the default broadcast', 'median us', 'mean us')
-  rows = []
-  for name in found[0]:
-    middle_s = statistics.median(statistics.median(e[name]) for e in found)
-    mean_s = statistics.median(statistics.fmean(e[name]) for e in found)
-    rows.append((name, _number(1e6 * middle_s, 0), _number(1e6 * mean_s, 0)))
+  kinds = statistics.median, statistics.fmean
+  rows = [
+    (name, *(_middle((k(e[name]) for e in found), 0, 1e6) for k in kinds))
+    for name in found[0]
+  ]
   return table.render(header, rows)
 
 
@@ -130,12 +118,11 @@ def _realtime(found: Sequence[loops.Loop]) -> str:
   }
   rows = [
     (
-      name,
-      _number(statistics.median(seconds)),
-      _number(_ratio(wall['simulated'], seconds), 1),
+      name, _middle(seconds, 2),
+      table.number(_ratio(wall['simulated'], seconds), 1),
     )
     for name, seconds in wall.items()
-  ]
+  ]  # fmt: skip
   return table.render(header, rows)
 
 
@@ -168,12 +155,10 @@ def _dynamics(found: pilots.Flying) -> str:
     simulated_s = [loop.simulated_s for loop in whole]
     rows.append(
       (
-        name,
-        _number(statistics.median(wall_s)),
-        _number(_ratio(simulated_s, wall_s), 1),
-        _number(1e6 * statistics.median(found.step_s[name]), 0),
+        name, _middle(wall_s, 2), table.number(_ratio(simulated_s, wall_s), 1),
+        _middle(found.step_s[name], 0, 1e6),
       )
-    )
+    )  # fmt: skip
   return table.render(header, rows)
 
 
@@ -188,25 +173,26 @@ def _observers(found: Sequence[loops.Loop]) -> str:
   cost_s = _by_observers(found)
   rows = [
     (
-      str(count),
-      _number(1e6 * statistics.median(seconds), 0),
-      _number(_ratio(seconds, cost_s[_FEW])),
+      str(count), _middle(seconds, 0, 1e6),
+      table.number(_ratio(seconds, cost_s[_FEW])),
     )
     for count, seconds in cost_s.items()
-  ]
+  ]  # fmt: skip
   return table.render(header, rows)
 
 
 def _memory(found: sections.Memory) -> str:
   after_mb = found.after_mb
-  header = ('peak memory of a process', 'MB')
-  rows = [
-    ('one default broadcast', _number(found.whole_mb, 0)),
-    ('broadcast 1 in another process', _number(after_mb[0], 0)),
-    ('broadcast 2', _number(after_mb[1], 0)),
-    (f'broadcast {len(after_mb)}', _number(after_mb[-1], 0)),
-  ]
-  return table.render(header, rows)
+  rows = {
+    'one default broadcast': found.whole_mb,
+    'broadcast 1 in another process': after_mb[0],
+    'broadcast 2': after_mb[1],
+    f'broadcast {len(after_mb)}': after_mb[-1],
+  }
+  return table.render(
+    ('peak memory of a process', 'MB'),
+    [(name, table.number(each_mb, 0)) for name, each_mb in rows.items()],
+  )
 
 
 def _worker_ratios(found: Mapping[int, Sequence[float]]) -> Ratios:
@@ -215,30 +201,20 @@ def _worker_ratios(found: Mapping[int, Sequence[float]]) -> Ratios:
 
 def _workers(found: Mapping[int, Sequence[float]]) -> str:
   header = ('processes', 'simulated s a second')
-  rows = [
-    (str(count), _number(statistics.median(each), 1))
-    for count, each in found.items()
-  ]
+  rows = [(str(count), _middle(each, 1)) for count, each in found.items()]
   return table.render(header, rows)
 
 
-_TABLES: dict[str, Callable[..., str]] = {
-  'cameras': _cameras,
-  'stages': _stages,
-  'receivers': _receivers,
-  'realtime': _realtime,
-  'dynamics': _dynamics,
-  'observers': _observers,
-  'memory': _memory,
-  'workers': _workers,
-}
-_RATIOS: dict[str, Callable[..., Ratios]] = {
-  'cameras': _camera_ratios,
-  'receivers': _receiver_ratios,
-  'realtime': _realtime_ratios,
-  'dynamics': _dynamics_ratios,
-  'observers': _observer_ratios,
-  'workers': _worker_ratios,
+# How each part is told, and the ratios that follow from it.
+_PARTS: dict[str, tuple[Callable[..., str], Callable[..., Ratios]]] = {
+  'cameras': (_cameras, _camera_ratios),
+  'stages': (_stages, lambda found: {}),
+  'receivers': (_receivers, _receiver_ratios),
+  'realtime': (_realtime, _realtime_ratios),
+  'dynamics': (_dynamics, _dynamics_ratios),
+  'observers': (_observers, _observer_ratios),
+  'memory': (_memory, lambda found: {}),
+  'workers': (_workers, _worker_ratios),
 }
 
 
@@ -250,8 +226,7 @@ def ratios(results: Mapping[str, Any]) -> Ratios:
   """
   out: Ratios = {}
   for name, found in results.items():
-    if name in _RATIOS:
-      out |= _RATIOS[name](found)
+    out |= _PARTS[name][1](found)
   return out
 
 
@@ -259,7 +234,7 @@ def text(results: Mapping[str, Any]) -> str:
   """Every ratio, then a table for each part."""
   parts = []
   if all_ratios := ratios(results):
-    rows = [(name, _number(value)) for name, value in all_ratios.items()]
+    rows = [(name, table.number(value)) for name, value in all_ratios.items()]
     parts.append(table.render(('ratio', ''), rows))
-  parts += [_TABLES[name](found) for name, found in results.items()]
+  parts += [_PARTS[name][0](found) for name, found in results.items()]
   return '\n\n'.join(parts)
