@@ -140,7 +140,7 @@ def test_an_error_and_its_speed_belong_together() -> None:
 def test_vehicles_that_err_start_further_apart() -> None:
   near = {'dynamics': 'rotors', 'observers': 2, 'distance_m': 0.6}
   scenario.Scenario(half_span_deg=10.0, **near)
-  with pytest.raises(layouts.LayoutError, match=r'at least 0.23\d m apart'):
+  with pytest.raises(layouts.LayoutError, match=r'at least 0.24\d m apart'):
     scenario.Scenario(half_span_deg=10.0, estimator='mocap', **near)
 
 
