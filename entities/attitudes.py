@@ -6,6 +6,8 @@ undone the shortest way.
 
 import numpy as np
 
+_AXES = (0, 1, 2), (1, 2, 0), (2, 0, 1)
+
 
 def thrusting(force: np.ndarray, yaw_rad: np.ndarray) -> np.ndarray:
   """Attitudes (N, 4) whose z axes point along forces (N, 3).
@@ -38,8 +40,16 @@ def turned(quaternion: np.ndarray, turn_rad: np.ndarray) -> np.ndarray:
   w, v = quaternion[:, :1], quaternion[:, 1:]
   half = turn_rad / 2
   scalar = w - (v * half).sum(axis=1)[:, None]
-  out = np.concatenate([scalar, v + w * half + np.cross(v, half)], axis=1)
+  out = np.concatenate([scalar, v + w * half + cross(v, half)], axis=1)
   return out / np.sqrt((out**2).sum(axis=1))[:, None]
+
+
+def cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+  """Cross products of rows (N, 3); numpy's own takes three times as long."""
+  out = np.empty_like(a)
+  for i, j, k in _AXES:
+    out[:, i] = a[:, j] * b[:, k] - a[:, k] * b[:, j]
+  return out
 
 
 def error(goal: np.ndarray) -> np.ndarray:
@@ -57,7 +67,7 @@ def error(goal: np.ndarray) -> np.ndarray:
 
 def _vector() -> np.ndarray:  # (4, 12)
   out = np.zeros((4, 3, 4))
-  for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
+  for i, j, k in _AXES:
     out[0, i, i + 1], out[i + 1, i, 0] = 1, -1
     out[j + 1, i, k + 1], out[k + 1, i, j + 1] = -1, 1
   return out.reshape(4, 12)

@@ -216,7 +216,7 @@ def _body_rate(
   if not jerk_mps3.any():
     return np.zeros_like(jerk_mps3)
   squared = (force_mps2**2).sum(axis=1)[:, None]
-  turning = np.cross(force_mps2, jerk_mps3) / squared
+  turning = attitudes.cross(force_mps2, jerk_mps3) / squared
   return (turning[:, None] @ rotation)[:, 0]
 
 
