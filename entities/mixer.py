@@ -28,8 +28,10 @@ def mix(demand: np.ndarray) -> np.ndarray:
   )
   so_far = np.clip(level, low - lowest, high - highest) + turning
   room = np.where(yawing > 0, high - so_far, so_far - low)
-  fits = room / np.maximum(np.abs(yawing), 1e-9)
-  return so_far + yawing * np.clip(fits.min(axis=1, keepdims=True), 0, 1)
+  share = (room / np.maximum(np.abs(yawing), 1e-9)).min(axis=1, keepdims=True)
+  within = so_far + yawing * np.clip(share, 0, 1)
+  fits = ((out >= low) & (out <= high)).all(axis=1, keepdims=True)
+  return np.where(fits, out, within)
 
 
 def lead(
