@@ -33,9 +33,11 @@ _SILVER = (0.78, 0.80, 0.82, 1.0)
 _SMOKE = (0.84, 0.87, 0.90, 1.0)
 _STEEL = (0.70, 0.72, 0.75, 1.0)
 _WHITE = (0.96, 0.96, 0.95, 1.0)
+# Blades that turn two hundred times a second, as long as a picture is exposed.
+_BLUR = (0.10, 0.10, 0.11, 0.22)
 
 # Front left, rear left, rear right, front right.
-_MOTORS_RAD = tuple(math.pi / 4.0 + i * math.pi / 2.0 for i in range(4))
+MOTORS_RAD = tuple(math.pi / 4.0 + i * math.pi / 2.0 for i in range(4))
 # Where each propeller came to rest, so that no two views look alike.
 _BLADES_RAD = (0.5, 0.9, 1.3, 1.7)
 
@@ -54,15 +56,17 @@ class Part:
   solids: tuple[shapes.Solid, ...]
 
 
-def draw(body: mjcf.Element, accent_rgba: Rgba) -> None:
+def draw(body: mjcf.Element, accent_rgba: Rgba, spinning: bool = False) -> None:
   """Adds the visible shapes to `body`, one mesh a colour.
 
   Args:
     body: The rigid body, x forward and z up, origin at the centre of mass.
     accent_rgba: Colour of the front rotors, the battery's label and the mark
       on the deck.
+    spinning: Whether the propellers turn: their blades are a blur then, which
+      is the same in every picture.
   """
-  for part in parts(accent_rgba):
+  for part in parts(accent_rgba, spinning):
     solid = shapes.joined(part.solids)
     mesh = body.root.asset.add(
       'mesh',
@@ -98,8 +102,8 @@ def enclose(body: mjcf.Element) -> None:
   )
 
 
-def parts(accent_rgba: Rgba) -> Iterator[Part]:
-  """Everything that is drawn, colour by colour."""
+def parts(accent_rgba: Rgba, spinning: bool = False) -> Iterator[Part]:
+  """Everything that is drawn, colour by colour; see `draw`."""
   yield Part('board', _BOARD, (_plate(), *_headers(), *_four(_arm())))
   yield Part('battery', _SILVER, (_battery(),))
   yield Part('label', accent_rgba, (_label(), _mark()))
@@ -111,7 +115,11 @@ def parts(accent_rgba: Rgba) -> Iterator[Part]:
   rims = _four(_rim())
   yield Part('front_rotors', accent_rgba, (rims[0], rims[3]))
   yield Part('rear_rotors', _SMOKE, (rims[1], rims[2]))
-  yield Part('propellers', _BLACK, tuple(_propellers()))
+  if spinning:
+    yield Part('propellers', _BLACK, _four(_hub()))
+    yield Part('blurs', _BLUR, _four(_blur()))
+  else:
+    yield Part('propellers', _BLACK, tuple(_propellers()))
 
 
 def _on_motor(solid: shapes.Solid, angle_rad: float) -> shapes.Solid:
@@ -121,7 +129,7 @@ def _on_motor(solid: shapes.Solid, angle_rad: float) -> shapes.Solid:
 
 
 def _four(solid: shapes.Solid) -> tuple[shapes.Solid, ...]:
-  return tuple(_on_motor(solid, angle) for angle in _MOTORS_RAD)
+  return tuple(_on_motor(solid, angle) for angle in MOTORS_RAD)
 
 
 def _plate() -> shapes.Solid:
@@ -209,14 +217,24 @@ def _rim() -> shapes.Solid:
   return shapes.hoop(ROTOR_RADIUS_M - 0.0028, ROTOR_RADIUS_M, *_RIM_Z_M, 24)
 
 
+def _hub() -> shapes.Solid:
+  profile = [(0.0010, 0.0108), (0.0026, 0.0108), (0.0020, TOP_M)]
+  return shapes.turned([(0.0010, 0.0085), *profile], 10)
+
+
+def _blur() -> shapes.Solid:
+  """What is swept by blades, up to the rim."""
+  half, radius = 0.0004, ROTOR_RADIUS_M - 0.0028
+  profile = [(radius, _BLADE_Z_M - half), (radius, _BLADE_Z_M + half)]
+  return shapes.turned(profile, 24)
+
+
 def _propellers() -> Iterator[shapes.Solid]:
   """Two blades and a hub for each motor; neighbours turn opposite ways."""
-  profile = [(0.0010, 0.0108), (0.0026, 0.0108), (0.0020, TOP_M)]
-  hub = shapes.turned([(0.0010, 0.0085), *profile], 10)
   blade = _blade()
-  left = shapes.joined([hub, blade, blade.at(0.0, 0.0, math.pi)])
+  left = shapes.joined([_hub(), blade, blade.at(0.0, 0.0, math.pi)])
   right = left.mirrored()
-  for i, (motor, rest) in enumerate(zip(_MOTORS_RAD, _BLADES_RAD, strict=True)):
+  for i, (motor, rest) in enumerate(zip(MOTORS_RAD, _BLADES_RAD, strict=True)):
     yield _on_motor((right, left)[i % 2].at(0.0, 0.0, rest), motor)
 
 

@@ -30,6 +30,7 @@ class Bystander(crazyflie.Crazyflie):
     radius_m: float,
     spread_m: float,
     agreement: agreement_lib.Agreement = agreement_lib.Agreement(),
+    spinning: bool = False,
   ) -> None:
     """Builds the model.
 
@@ -39,8 +40,9 @@ class Bystander(crazyflie.Crazyflie):
       radius_m: Of that circle.
       spread_m: How far from its middle's place, along each axis, it may be.
       agreement: What both sides know: the rate.
+      spinning: Whether it is drawn with propellers that turn.
     """
-    super()._build(name)
+    super()._build(name, spinning=spinning)
     self._about_m, self._spread_m = middle_m, spread_m
     self._radius_m, self._frame_s = radius_m, agreement.frame_s
 

@@ -34,7 +34,10 @@ class Crazyflie(composer.Entity):
   """
 
   def _build(
-    self, name: str = 'crazyflie', accent_rgba: Sequence[float] = AMBER
+    self,
+    name: str = 'crazyflie',
+    accent_rgba: Sequence[float] = AMBER,
+    spinning: bool = False,
   ) -> None:
     """Builds the model.
 
@@ -42,6 +45,7 @@ class Crazyflie(composer.Entity):
       name: Model name, the prefix of everything inside it.
       accent_rgba: Colour of the front rotors and the battery's label, 4 values
         in [0, 1]; tells vehicles apart.
+      spinning: Whether it is drawn with propellers that turn.
     """
     self._mjcf_root = mjcf.RootElement(model=name)
     self._airframe = self._mjcf_root.worldbody.add('body', name='airframe')
@@ -51,7 +55,8 @@ class Crazyflie(composer.Entity):
     self._centre = self._airframe.add(
       'site', name='centre', pos=(0, 0, 0), size=(0.001,), group=3
     )
-    airframe.draw(self._airframe, accent_rgba)
+    self._spinning = spinning
+    airframe.draw(self._airframe, accent_rgba, spinning)
     airframe.enclose(self._airframe)
     self._velocity = self._mjcf_root.sensor.add(
       'framelinvel', name='velocity', objtype='site', objname=self._centre
@@ -74,6 +79,11 @@ class Crazyflie(composer.Entity):
   def centre(self) -> mjcf.Element:
     """The site at the centre of mass, in the body frame."""
     return self._centre
+
+  @property
+  def spinning(self) -> bool:
+    """Whether its propellers turn, as those that carry it do."""
+    return self._spinning
 
   @property
   def velocity_sensor(self) -> mjcf.Element:

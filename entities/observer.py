@@ -1,5 +1,7 @@
 """An observer: a Crazyflie with an eye, which is all that it has."""
 
+from collections.abc import Callable
+
 from dm_control import composer, mjcf
 from dm_control.composer.observation import observable
 import numpy as np
@@ -15,6 +17,7 @@ class Observer(crazyflie.Crazyflie):
 
   Attributes:
     sensor: What spoils its images, from the next episode on.
+    error_m: (3,) how far from itself it takes itself to be.
   """
 
   def _build(  # type: ignore[override]
@@ -24,6 +27,7 @@ class Observer(crazyflie.Crazyflie):
     eye_offset_m: float = optics.OFFSET_M,
     sensor: sensor_lib.Sensor = sensor_lib.Sensor(),
     agreement: agreement_lib.Agreement = agreement_lib.Agreement(),
+    dynamics: str = 'ideal',
   ) -> None:
     """Builds the model.
 
@@ -33,8 +37,9 @@ class Observer(crazyflie.Crazyflie):
       eye_offset_m: How far the eye is ahead of the centre of mass.
       sensor: What spoils its images.
       agreement: What both sides know: its camera and its rate.
+      dynamics: One of `limits.DYNAMICS`.
     """
-    super()._build(name, crazyflie.AZURE)
+    super()._build(name, crazyflie.AZURE, dynamics == 'rotors')
     self._incremental = camera == 'incremental'
     self._eye = self.airframe.add(
       'camera', name='eye', pos=(eye_offset_m, 0, 0),
@@ -44,6 +49,7 @@ class Observer(crazyflie.Crazyflie):
     self._agreement = agreement
     self.sensor = sensor
     self._feed: feed.Feed | None = None
+    self.error_m = np.zeros(3)
 
   def _build_observables(self) -> 'ObserverObservables':
     return ObserverObservables(self)
@@ -101,6 +107,18 @@ def _time_s(physics: mjcf.Physics) -> np.ndarray:
   return np.round(physics.time(), 6)
 
 
+class _Estimate(observable.MJCFFeature):
+  """The place of an observer and its error."""
+
+  def __init__(self, entity: Observer) -> None:
+    super().__init__('xpos', entity.centre)
+    self._entity = entity
+
+  def _callable(self, physics: mjcf.Physics) -> Callable[[], np.ndarray]:
+    take = super()._callable(physics)
+    return lambda: take() + self._entity.error_m
+
+
 class ObserverObservables(crazyflie.CrazyflieObservables):
   """What an observer's agent may see, beside the vehicle's true state."""
 
@@ -109,6 +127,11 @@ class ObserverObservables(crazyflie.CrazyflieObservables):
     """Image of the eye: (H, W, 3) uint8 RGB."""
     entity = self._entity
     return eye.EyeCamera(entity.eye, entity.incremental, entity.spoil)
+
+  @composer.observable
+  def position_m(self) -> observable.MJCFFeature:
+    """Where it takes itself to be: (3,) float64, metres."""
+    return _Estimate(self._entity)
 
   @composer.observable
   def time_s(self) -> observable.Generic:

@@ -14,8 +14,17 @@ BRAKE_S = 0.8  # To rest from anywhere in a gesture; under 2 m/s^2.
 class Performer(crazyflie.Crazyflie):
   """Flies gestures in its frontal plane, smoothly, until it is stopped."""
 
-  def _build(self, name: str = 'performer') -> None:  # type: ignore[override]
-    super()._build(name)
+  def _build(  # type: ignore[override]
+    self, name: str = 'performer', dynamics: str = 'ideal'
+  ) -> None:
+    """Builds the model.
+
+    Args:
+      name: Model name, the prefix of everything inside it.
+      dynamics: One of `limits.DYNAMICS`.
+    """
+    super()._build(name, spinning=dynamics == 'rotors')
+    self._limits = limits.LIMITS[dynamics]
     self._schedule = schedule_lib.Schedule(())
     self._stop_s = math.inf
 
@@ -30,7 +39,7 @@ class Performer(crazyflie.Crazyflie):
     Raises:
       limits.LimitError: if it cannot be flown.
     """
-    limits.check_schedule(schedule)
+    limits.check_schedule(schedule, self._limits)
     self._schedule = schedule
     self._stop_s = math.inf
 

@@ -137,6 +137,7 @@ def report(scene: scenario.Scenario, verdict: verdicts.Verdict) -> str:
       table.number(each.start_s),
       table.number(each.arrival_s),
       table.number(each.error_m, 1, 1e3),
+      *_estimated(scene, table.number(each.estimate_error_m, 1, 1e3)),
       table.number(each.hold_s),
       'FAIL' if each.failures else 'pass',
     )
@@ -144,7 +145,8 @@ def report(scene: scenario.Scenario, verdict: verdicts.Verdict) -> str:
   ]
   header = (
     'observer', 'sent', 'decoded', 'END s', 'final null s', 'start s',
-    'arrival s', 'error mm', 'hold s', 'checks',
+    'arrival s', 'error mm', *_estimated(scene, 'by estimate'), 'hold s',
+    'checks',
   )  # fmt: skip
   lines = [table.render(header, rows), '']
   for each in verdict.outcomes:
@@ -158,6 +160,11 @@ def report(scene: scenario.Scenario, verdict: verdicts.Verdict) -> str:
     ' decoded.'
   )
   return '\n'.join(lines)
+
+
+def _estimated(scene: scenario.Scenario, cell: str) -> tuple[str, ...]:
+  """A cell of the column that only estimates have."""
+  return () if scene.estimator == 'none' else (cell,)
 
 
 if __name__ == '__main__':

@@ -1,7 +1,8 @@
 """Runs a suite of broadcasts and sets the results beside the paper's.
 
 Leaves index.html, results.jsonl, results.csv and a run folder for each case.
-Ended at any moment, the same command goes on where it was. Exit status 0 when
+Ended at any moment, the same command goes on where it was. Flags of a scenario,
+such as --dynamics=rotors, change it in every case. Exit status 0 when
 every case gave what is published for it, or passed where nothing is; 1
 otherwise; 2 on bad input. A suite of your own is a JSON list of cases, each
 with a `name` and the fields of a scenario that it changes. `--compare A B`
@@ -9,6 +10,7 @@ sets two result folders side by side and runs nothing.
 """
 
 from collections.abc import Sequence
+import dataclasses
 import json
 import pathlib
 import sys
@@ -19,9 +21,19 @@ from absl import flags
 from waggle_tasks import suites
 from waggle_tasks.agents import receivers
 from waggle_tasks.experiments import launch
-from waggle_tasks.experiments.flags import engine_flag, receiver_flag
+from waggle_tasks.experiments.flags import (
+  engine_flag,
+  receiver_flag,
+  scenario_flags,
+)
 from waggle_tasks.experiments.pages import run_page, suite_page
-from waggle_tasks.experiments.record import archive, nulls, provenance, reach
+from waggle_tasks.experiments.record import (
+  archive,
+  nulls,
+  provenance,
+  reach,
+  scenario_fields,
+)
 from waggle_tasks.experiments.results import suite_tables
 from waggle_tasks.experiments.studies import case_rows
 from waggle_tasks.protocol import checks
@@ -35,9 +47,12 @@ _SUITE = flags.DEFINE_string(
 )
 _CASE = flags.DEFINE_list('case', [], 'Only these cases, by name.')
 _RECEIVER = receiver_flag.define()
+scenario_flags.define()
 engine_flag.define()
 _OUTPUT = flags.DEFINE_string(
-  'output', None, 'Result folder; unset, runs/SUITE-RECEIVER, and the cases.'
+  'output',
+  None,
+  'Result folder; unset, runs/SUITE-RECEIVER, the cases, and what is changed.',
 )
 _COMPARE = flags.DEFINE_string(
   'compare', None, 'Result folder to set beside the folder B.'
@@ -61,10 +76,13 @@ def main(argv: Sequence[str]) -> int:
 
   engine, what = engine_flag.engine()
   stem = pathlib.Path(_SUITE.value).stem
-  name = '-'.join([stem, _RECEIVER.value, *_CASE.value])
+  changes = scenario_fields.flags(scenario_flags.given())
+  words = [each.removeprefix('--') for each in changes]
+  name = '-'.join([stem, _RECEIVER.value, *_CASE.value, *words])
   folder = pathlib.Path(_OUTPUT.value or f'runs/{name}')
   command = provenance.command_line(
-    'suite', [f'--suite={_SUITE.value}', f'--receiver={_RECEIVER.value}']
+    'suite',
+    [f'--suite={_SUITE.value}', f'--receiver={_RECEIVER.value}', *changes],
   )
   began_s = time.monotonic()
   study = suite_study.Suite(cases, _RECEIVER.value, run_page.leave)
@@ -87,7 +105,11 @@ def _cases() -> tuple[suites.Case, ...]:
   known = [case.name for case in cases]
   for wanted in _CASE.value:
     checks.choice('case', wanted, known, suites.SuiteError)
-  return tuple(c for c in cases if not _CASE.value or c.name in _CASE.value)
+  return tuple(
+    dataclasses.replace(case, scene=scenario_flags.read(case.scene))
+    for case in cases
+    if not _CASE.value or case.name in _CASE.value
+  )
 
 
 def _own(path: str) -> tuple[suites.Case, ...]:

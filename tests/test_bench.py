@@ -18,6 +18,7 @@ from waggle_tasks.experiments.bench_parts import (
   cameras,
   events,
   loops,
+  pilots,
   processes,
   readers,
   sections,
@@ -55,6 +56,13 @@ MEASURED = {
     loops.Loop(3, 2500, 9.0, 10.0, 9.5), loops.Loop(3, 2500, 7.0, 8.0, 7.5),
     loops.Loop(3, 2500, 19.0, 20.0, 9.5),
   ],
+  'dynamics': pilots.Flying(
+    {
+      'ideal': [loops.Loop(3, 2500, 9.0, 10.0, 9.5)],
+      'rotors': [loops.Loop(3, 2500, 11.0, 12.5, 12.0)],
+    },
+    {'ideal': [0.0002], 'rotors': [0.0005]},
+  ),
   'observers': [
     loops.Loop(count, 100, count * cost_s, 1.0, 1.0)
     for cost_s in (0.1, 0.2)
@@ -73,6 +81,8 @@ def test_ratios_are_medians_of_what_was_measured_side_by_side() -> None:
       'our full render / incremental camera': 20.0,
       'klt receiver / view_bank': 2.0,
       'simulated time / time on one core': 10.0,
+      'simulated time / time on one core, rotors': 8.0,
+      'share of a broadcast that rotors add': 0.06,
       'cost of a receiver and frame, 16 observers / 2': 1.0,
       'throughput, 2 processes / 1': 2.0,
     }

@@ -26,6 +26,7 @@ OTHERS = {
   'hover_log': scenario_fields.table()['hover_log'].told(
     hover.Spectrum(*[(0.5,) * hover.BANDS] * 6)
   ),
+  'dynamics': 'rotors', 'estimator': 'mocap', 'gusts': True, 'downwash': True,
 }  # fmt: skip
 
 
@@ -55,6 +56,10 @@ def test_every_field_that_is_changed_is_said(name: str) -> None:
     extra = {'payload': '0000010'}
   if name == 'hover_log':
     extra = {'performer_hover': 'log'}
+  if name in ('estimator', 'wind_mps', 'gusts', 'downwash'):
+    extra = {'dynamics': 'rotors'}
+  if name == 'gusts':
+    extra['wind_mps'] = 1.0
   said = changes.of(made(**{**extra, name: other}))
   assert any(each.startswith(f'{name}=') for each in said)
   assert len(said) == 1 + len(extra.keys() - {name})

@@ -12,6 +12,7 @@ from waggle_tasks import scenario
 from waggle_tasks.agents import observer_agent, receiver, recogniser
 from waggle_tasks.experiments.episodes import evaluator
 from waggle_tasks.experiments.episodes import rollout as rollout_lib
+from waggle_tasks.experiments.record import flown as flown_lib
 from waggle_tasks.experiments.record import traces as traces_lib
 from waggle_tasks.experiments.record import verdicts
 from waggle_tasks.protocol import flight, frame, payload, schedule, timing
@@ -140,6 +141,55 @@ def test_moving_before_the_own_final_null_fails(
   case = Case()
   case.move('observer_1', 50.0, 51.0, offset_m)
   assert case.failures == [failures, ()]
+
+
+class Rotors(Case):
+  """The same where vehicles have rotors and fly by an estimate."""
+
+  def __init__(self) -> None:
+    super().__init__(dynamics='rotors', estimator='mocap')
+    still = np.zeros(len(TIMES_S))
+    self.seen['flights'] = {
+      name: flown_lib.Flown(
+        still, np.zeros((len(TIMES_S), 4)), 0 * way, 0 * way, way.copy()
+      )
+      for name, way in self.positions_m.items()
+    }
+
+  def told(self, name: str) -> flown_lib.Flown:
+    return self.seen['flights'][name]
+
+
+def test_what_nobody_commanded_is_no_premature_motion() -> None:
+  """Wind moves a vehicle; only who is told to go has moved."""
+  case = Rotors()
+  case.move('observer_1', 50.0, 51.0, 0.03)
+  assert case.failures == [(), ()]
+  case.told('observer_1').told_m[1250:1275] += (0.03, 0.0, 0.0)
+  assert case.failures == [('premature motion: 0.030 m from 50.00 s',), ()]
+
+
+@pytest.mark.parametrize(
+  ('error_m', 'failures'),
+  [(0.012, ()), (0.02, ('arrival: never, 20.0 mm away at the end',))],
+)
+def test_arrival_is_judged_by_truth_and_both_errors_are_told(
+  error_m: float, failures: tuple[str, ...]
+) -> None:
+  """It flies where it should by its own estimate, which is wrong there."""
+  case = Rotors()
+  grown = np.where(TIMES_S > NULL_S + 0.02, error_m, 0.0)[:, None] * [
+    1.0,
+    0.0,
+    0.0,
+  ]
+  case.positions_m['observer_1'] -= grown
+  case.told('observer_1').error_m[:] += grown
+  assert case.failures == [failures, ()]
+  outcome = case.verdict.outcomes[0]
+  assert outcome.error_m == pytest.approx(error_m)
+  assert outcome.estimate_error_m == pytest.approx(0, abs=1e-9)
+  assert Case().verdict.outcomes[0].estimate_error_m is None
 
 
 def test_starting_with_anothers_null_fails() -> None:

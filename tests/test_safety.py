@@ -297,6 +297,8 @@ def test_who_leaves_its_way_stops_and_holds(load: Load) -> None:
   (refusal,) = environment.task.refusals
   assert 'm from its way, over 0.050 m' in refusal.reason
   position_m = environment.task.positions_m(environment.physics)['observer_1']
-  velocity = environment.task.velocities_mps(environment.physics)['observer_1']
+  velocity = environment.task.fleet.velocities_mps(environment.physics)[
+    'observer_1'
+  ]
   assert abs(position_m[0]) < 0.01
   assert np.linalg.norm(velocity) < 1e-3

@@ -34,6 +34,7 @@ def parts(scenario: Scenario) -> parts_lib.Parts:
       scenario.eye_offset_m,
       sensor,
       agreement,
+      scenario.dynamics,
     )
     for name, sensor in zip(
       layouts.names(scenario.observers), scenario.sensors, strict=True
@@ -41,7 +42,7 @@ def parts(scenario: Scenario) -> parts_lib.Parts:
   )
   made = parts_lib.Parts(
     room=flight_room.FlightRoom(scenario.appearance, agreement=agreement),
-    performer=performer.Performer(),
+    performer=performer.Performer(dynamics=scenario.dynamics),
     observers=observers,
     poses=scenario.poses(),
     performance=scenario.performance,
@@ -49,8 +50,14 @@ def parts(scenario: Scenario) -> parts_lib.Parts:
     agreement=agreement,
     jitter_m=scenario.jitter_m,
     drift=scenario.drift,
+    dynamics=scenario.dynamics,
+    air=scenario.air,
+    estimator=scenario.estimator,
   )
-  furnish.furnish(made.room, scenario.surroundings, made.poses, agreement)
+  furnish.furnish(
+    made.room, scenario.surroundings, made.poses, agreement,
+    scenario.dynamics == 'rotors',
+  )  # fmt: skip
   return made
 
 

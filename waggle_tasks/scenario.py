@@ -14,8 +14,9 @@ from waggle_tasks.protocol import checks, clock, controls, gestures, timing
 from waggle_tasks.protocol import limits as limits_lib
 from waggle_tasks.protocol import payload as payload_lib
 from waggle_tasks.protocol import performance as performance_lib
+from waggle_tasks.tasks import air as air_lib
 from waggle_tasks.tasks import drift as drift_lib
-from waggle_tasks.tasks import safety
+from waggle_tasks.tasks import estimators, safety
 from waggle_tasks.tasks import surroundings as surroundings_lib
 
 CONTROLS = controls.CONTROLS
@@ -65,6 +66,13 @@ class Scenario:
     units: The agreed fields of the payload.
     appearance: How the room looks.
     surroundings: What else moves in it.
+    dynamics: How vehicles fly, one of `limits_lib.DYNAMICS`: by ideal forces,
+      as in the paper, which never tilt a vehicle, or by four rotors with lag
+      and drag, under a cascade of laws.
+    air: What the air does; only rotors feel it.
+    estimator: How vehicles with rotors know where they are, one of
+      `estimators.ESTIMATORS`: with none of them they know the truth, with
+      another they wander by its errors.
     drift: How far vehicles wander from where they should be.
     sensor: What spoils the observers' images.
     rate_hz: How many images and references there are in a second: 250 over a
@@ -100,6 +108,9 @@ class Scenario:
   units: payload_lib.Units = payload_lib.Units()
   appearance: appearance_lib.Appearance = appearance_lib.Appearance()
   surroundings: surroundings_lib.Surroundings = surroundings_lib.Surroundings()
+  dynamics: str = 'ideal'
+  air: air_lib.Air = air_lib.Air()
+  estimator: str = 'none'
   drift: drift_lib.Drift = drift_lib.Drift()
   sensor: sensor_lib.Sensor = sensor_lib.Sensor()
   rate_hz: float = agreement_lib.Agreement.rate_hz
@@ -119,6 +130,11 @@ class Scenario:
           f' got {value!r}'
         )
     checks.choice('control', self.control, CONTROLS, ScenarioError)
+    checks.choice('dynamics', self.dynamics, limits_lib.DYNAMICS, ScenarioError)
+    checks.choice(
+      'estimator', self.estimator, estimators.ESTIMATORS, ScenarioError
+    )
+    self._check_dynamics()
     checks.choice('camera', self.camera, optics.CAMERAS, ScenarioError)
     counts = {
       'observers': (1, MAX_OBSERVERS),
@@ -148,7 +164,7 @@ class Scenario:
     if self.duration_s is None:
       del limits['duration_s']
     checks.settle_numbers(self, limits, ScenarioError)
-    limits_lib.check_codebook(self.codebook)
+    limits_lib.check_codebook(self.codebook, limits_lib.LIMITS[self.dynamics])
     self._check_height()
     payload_lib.Payload.from_bits(self.payload, self.units)
     self.surroundings.check(self.poses(), self.units.reach_m)
@@ -226,10 +242,25 @@ class Scenario:
       poses[name] = pose = pose.settled(self.hover_height_m)
       bounds.check_inside(name, pose)
     # Two neighbours can come closer by the jitter of both, along x and y, and
-    # by the drift of both.
-    nearer_m = 2 * math.hypot(self.jitter_m, self.jitter_m) + self.drift.near_m
+    # by the drift and the errors of both.
+    nearer_m = 2 * math.hypot(self.jitter_m, self.jitter_m)
+    nearer_m += self.drift.near_m + estimators.near_m(self.estimator)
     layouts.check_spacing(poses, safety.MINIMUM_SPACING_M + nearer_m)
     return poses
+
+  def _check_dynamics(self) -> None:
+    """Refuses what ideal forces, which are told the truth, do not feel."""
+    asked = {
+      'estimator': self.estimator != 'none',
+      'wind_mps': bool(self.air.wind_mps),
+      'downwash': self.air.downwash,
+    }
+    for field, is_asked in asked.items():
+      if is_asked and self.dynamics != 'rotors':
+        raise ScenarioError(
+          f'`{field}` must not be given with `dynamics` {self.dynamics!r}: no'
+          " air is felt and the truth is known there; choose 'rotors'"
+        )
 
   def _check_exposure(self, frame_s: float) -> None:
     """Refuses one that takes longer than from one image to the next."""

@@ -9,6 +9,7 @@ from waggle_tasks.agents import receivers
 from waggle_tasks.experiments.bench_parts import (
   cameras,
   loops,
+  pilots,
   processes,
   readers,
   stages,
@@ -136,6 +137,7 @@ SECTIONS: dict[str, Callable[[Settings], Any]] = {
   'realtime': lambda settings: _alone(
     loops.repeat, settings, what=[settings.whole]
   ),
+  'dynamics': lambda settings: _alone(pilots.measure, settings),
   'observers': lambda settings: _alone(
     loops.repeat, settings, what=settings.crowds
   ),

@@ -11,6 +11,7 @@ from typing import Any
 from waggle_tasks.experiments.bench_parts import (
   cameras,
   loops,
+  pilots,
   sections,
   stages,
 )
@@ -125,6 +126,42 @@ def _realtime(found: Sequence[loops.Loop]) -> str:
   return table.render(header, rows)
 
 
+def _dynamics_ratios(found: pilots.Flying) -> Ratios:
+  usual, *others = found.whole
+  out: Ratios = {}
+  for name in others:
+    loop_s = [loop.whole_s for loop in found.whole[name]]
+    simulated_s = [loop.simulated_s for loop in found.whole[name]]
+    more_s = [
+      (one - other) * loop.frames / loop.whole_s
+      for one, other, loop in zip(
+        found.step_s[name], found.step_s[usual], found.whole[name], strict=True
+      )
+    ]
+    out[f'simulated time / time on one core, {name}'] = _ratio(
+      simulated_s, loop_s
+    )
+    out[f'share of a broadcast that {name} add'] = statistics.median(more_s)
+  return out
+
+
+def _dynamics(found: pilots.Flying) -> str:
+  header = (
+    'default broadcast', 's', 'faster than real time', 'us a step, no images'
+  )  # fmt: skip
+  rows = []
+  for name, whole in found.whole.items():
+    wall_s = [loop.whole_s for loop in whole]
+    simulated_s = [loop.simulated_s for loop in whole]
+    rows.append(
+      (
+        name, _middle(wall_s, 2), table.number(_ratio(simulated_s, wall_s), 1),
+        _middle(found.step_s[name], 0, 1e6),
+      )
+    )  # fmt: skip
+  return table.render(header, rows)
+
+
 def _observer_ratios(found: Sequence[loops.Loop]) -> Ratios:
   cost_s = _by_observers(found)
   title = f'cost of a receiver and frame, {_MANY} observers / {_FEW}'
@@ -174,6 +211,7 @@ _PARTS: dict[str, tuple[Callable[..., str], Callable[..., Ratios]]] = {
   'stages': (_stages, lambda found: {}),
   'receivers': (_receivers, _receiver_ratios),
   'realtime': (_realtime, _realtime_ratios),
+  'dynamics': (_dynamics, _dynamics_ratios),
   'observers': (_observers, _observer_ratios),
   'memory': (_memory, lambda found: {}),
   'workers': (_workers, _worker_ratios),

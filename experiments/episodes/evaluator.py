@@ -155,7 +155,7 @@ def _early_motion(
   rollout: episode.Rollout, name: str, until_s: float
 ) -> list[str]:
   """Whether it left its place before `until_s`."""
-  positions_m = rollout.steady_m(name)
+  positions_m = rollout.told_m(name)  # Air and errors are no command.
   away_m = np.linalg.norm(positions_m - positions_m[0], axis=1)
   early = (away_m > progress.MOTION_M) & (rollout.times_s <= until_s)
   if not early.any():
@@ -208,9 +208,15 @@ def _fly(
     None,
   )
   last_m = float(error_m[-1])
+  found: dict[str, Any] = {'error_m': last_m}
+  if scene.estimator != 'none':
+    believed_m = rollout.believed_m(name)
+    goal_m = believed_m[begin] + expected_displacement_m(scene)
+    goal_m[2] = agreement.hover_height_m
+    found['estimate_error_m'] = float(np.linalg.norm(believed_m[-1] - goal_m))
   if arrival is None:
     reason = f'arrival: never, {last_m * 1e3:.1f} mm away at the end'
-    return {'error_m': last_m, 'failures': [reason]}
+    return {**found, 'failures': [reason]}
   left = np.flatnonzero(error_m[arrival:] >= flight.ARRIVAL_ERROR_M)
   stayed = int(left[0]) if left.size else len(there) - 1 - arrival
   hold_s = stayed * frame_s
@@ -218,8 +224,8 @@ def _fly(
   if hold_s < flight.HOLD_S - 1e-6:
     failures.append(f'hold: {hold_s:.2f} s, under {flight.HOLD_S:g} s')
   return {
+    **found,
     'arrival_s': float(times_s[arrival]),
-    'error_m': last_m,
     'hold_s': hold_s,
     'failures': failures,
   }

@@ -9,7 +9,7 @@ import numpy as np
 from waggle_tasks import registry, scenario
 from waggle_tasks.agents import observer_agent
 from waggle_tasks.experiments.episodes import true_places
-from waggle_tasks.experiments.record import episode, provenance
+from waggle_tasks.experiments.record import episode, flown, provenance
 from waggle_tasks.experiments.record import traces as traces_lib
 
 # For whoever flies and needs nothing else of an episode.
@@ -49,6 +49,7 @@ def play(
 ) -> Rollout:
   """Plays an episode in an environment, with a new team; closes nothing."""
   task, truth, drifts, contacts = environment.task, [], [], []
+  flights: dict[str, list] = {}
   frame_s = task.agreement.frame_s
   tracer = traces_lib.Tracer(len(team.agents))
   timestep = environment.reset()
@@ -57,6 +58,11 @@ def play(
   while True:
     truth.append(task.positions_m(physics))
     drifts.append(task.drifts_m())
+    errors_m = task.fleet.errors_m((len(truth) - 1) * frame_s)
+    for name, moment in task.fleet.flown().items():
+      flights.setdefault(name, []).append(
+        (*moment, errors_m[name], task.fleet.told_m[name])
+      )
     seen.note(physics, truth[-1]['performer'])
     time_s = (len(truth) - 1) * frame_s
     contacts += [(time_s, pair) for pair in task.contacts]
@@ -83,4 +89,8 @@ def play(
     dict(zip(events, tracer.traces(), strict=True)),
     {name: np.stack([d[name] for d in drifts]) for name in drifts[0]},
     seen.places_px(),
+    flights={
+      name: flown.Flown(*map(np.stack, zip(*moments, strict=True)))
+      for name, moments in flights.items()
+    },
   )

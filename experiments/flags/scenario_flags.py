@@ -46,8 +46,12 @@ def read(
   Raises:
     WaggleError: if a value breaks a rule of the scenario.
   """
-  given = {n: v for n, v in values().items() if flags.FLAGS[n].present}
-  return scenario_fields.changed(usual, given)
+  return scenario_fields.changed(usual, given())
+
+
+def given() -> dict[str, Any]:
+  """What the flags that were given say."""
+  return {n: v for n, v in values().items() if flags.FLAGS[n].present}
 
 
 def values() -> dict[str, Any]:

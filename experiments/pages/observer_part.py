@@ -57,12 +57,14 @@ def _word(outcome: verdicts.Outcome) -> str:
 
 
 def _outcome(outcome: verdicts.Outcome) -> markup.Markup:
-  columns = (
+  columns = [
     ('sent', 'expected', 0, 1), ('decoded', 'decoded', 0, 1),
     ('END, s', 'end_s', 2, 1), ('final null, s', 'final_null_s', 2, 1),
     ('start, s', 'start_s', 2, 1), ('arrival, s', 'arrival_s', 2, 1),
     ('error, mm', 'error_m', 2, 1e3), ('hold, s', 'hold_s', 2, 1),
-  )  # fmt: skip
+  ]  # fmt: skip
+  if outcome.estimate_error_m is not None:
+    columns.append(('by estimate, mm', 'estimate_error_m', 2, 1e3))
   cells = []
   for _, field, digits, scale in columns:
     value = getattr(outcome, field)

@@ -16,11 +16,13 @@ from waggle_tasks.experiments.pages import (
   markup,
   observer_part,
   room,
+  rotor_part,
   timelines,
 )
 from waggle_tasks.experiments.record import (
   archive,
   changes,
+  flown,
   scenario_fields,
   story,
   verdicts,
@@ -31,7 +33,7 @@ from waggle_tasks.protocol import payload
 _VIDEOS = {'.webm': 'video/webm', '.mp4': 'video/mp4'}
 _DATA = (
   'config.json', 'events.jsonl', 'result.json', 'provenance.json',
-  archive.TRACES, archive.POSITIONS,
+  archive.TRACES, archive.POSITIONS, flown.NAME,
 )  # fmt: skip
 
 # Of a scenario, what its one line says anyhow.
@@ -48,7 +50,7 @@ def write(folder: pathlib.Path) -> pathlib.Path:
 
   Raises:
     ArchiveError: if it is no run folder, or damaged.
-    TraceError: the same, of its traces.
+    TraceError: the same, of its traces; FlownError, of flights.
   """
   wrong = AttributeError, KeyError, TypeError, receivers.ReceiverError
   try:
@@ -92,6 +94,7 @@ def draw(run: archive.Run, films: Sequence[str]) -> markup.Markup:
     _failures(outcomes),
     _film(run, films),
     _flights(run),
+    rotor_part.draw(run),
     *(observer_part.draw(run, outcome) for outcome in outcomes),
     _provenance(run),
   ]

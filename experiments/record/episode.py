@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from waggle_tasks.agents import observer_agent, receiver
+from waggle_tasks.experiments.record import flown as flown_lib
 from waggle_tasks.experiments.record import traces as traces_lib
 from waggle_tasks.tasks import safety
 
@@ -34,6 +35,7 @@ class Rollout:
     targets_px: By observer name, (T, 2) where the performer truly was in its
       picture, x right and y down; NaN behind the camera.
     receiver: How observers read.
+    flights: By vehicle name, how it flew, where it has rotors.
   """
 
   times_s: np.ndarray
@@ -45,10 +47,21 @@ class Rollout:
   drifts_m: dict[str, np.ndarray] = dataclasses.field(default_factory=dict)
   targets_px: dict[str, np.ndarray] = dataclasses.field(default_factory=dict)
   receiver: str = ''
+  flights: dict[str, flown_lib.Flown] = dataclasses.field(default_factory=dict)
 
   def steady_m(self, name: str) -> np.ndarray:
     """(T, 3) true positions of a vehicle, less its drift: nobody's command."""
     return self.positions_m[name] - self.drifts_m.get(name, 0.0)
+
+  def told_m(self, name: str) -> np.ndarray:
+    """(T, 3) where a vehicle was told to be; without rotors it was there."""
+    flown = self.flights.get(name)
+    return self.steady_m(name) if flown is None else flown.told_m
+
+  def believed_m(self, name: str) -> np.ndarray:
+    """(T, 3) where a vehicle took itself to be, less its drift."""
+    flown = self.flights.get(name)
+    return self.steady_m(name) + (0.0 if flown is None else flown.error_m)
 
 
 @dataclasses.dataclass(frozen=True, eq=False)

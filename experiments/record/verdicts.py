@@ -21,6 +21,7 @@ class Account:
     hold_s: How long it stayed there after arriving.
     failures: Every check that failed, with the reason; empty is a pass.
     diagnosis: Where reading failed, for one without a message.
+    estimate_error_m: What it took `error_m` for, where it had an estimate.
   """
 
   observer: str
@@ -34,6 +35,7 @@ class Account:
   hold_s: float | None = None
   failures: tuple[str, ...] = ()
   diagnosis: str = ''
+  estimate_error_m: float | None = None
 
 
 class Outcome(Account):

@@ -9,6 +9,7 @@ from waggle_tasks.experiments.record import (
   archive,
   encoding,
   episode,
+  flown,
   provenance,
   verdicts,
 )
@@ -66,3 +67,5 @@ def write_run(
     (folder / name).write_text(text, encoding='utf-8')
   traces_lib.save(folder / archive.TRACES, rollout.traces)
   archive.save_positions(folder / archive.POSITIONS, rollout)
+  if rollout.flights:
+    flown.save(folder / flown.NAME, rollout.flights)

@@ -52,6 +52,28 @@ def test_a_control_of_the_paper_is_flown_and_set_beside_it(
   )
 
 
+def test_flags_of_a_scenario_change_every_case(
+  suite: Waggle, tmp_path: pathlib.Path
+) -> None:
+  changes = '--duration_s=0.08', '--dynamics=rotors', '--estimator=mocap'
+  done = suite('--suite=controls', '--case=no-send', *changes)
+  assert done.returncode == 0, done.stderr
+  (folder,) = (tmp_path / 'runs').iterdir()
+  assert folder.name == (
+    'controls-klt-no-send-duration_s=0.08-dynamics=rotors-estimator=mocap'
+  )
+  (line,) = (folder / 'results.jsonl').read_text('utf-8').splitlines()
+  scene = json.loads(line)['scenario']
+  assert (scene['dynamics'], scene['estimator']) == ('rotors', 'mocap')
+  assert scene['control'] == 'no_send'
+  origin = folder / 'cases' / 'no-send' / 'provenance.json'
+  command = json.loads(origin.read_text('utf-8'))['command']
+  assert set(changes) < set(command.split())
+  refused = suite('--suite=controls', '--wind_mps=1')
+  assert refused.returncode == 2
+  assert '`wind_mps` must not be given with `dynamics`' in refused.stderr
+
+
 def test_a_suite_of_ones_own_is_a_json_file(
   suite: Waggle, tmp_path: pathlib.Path
 ) -> None:

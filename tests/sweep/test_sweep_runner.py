@@ -283,8 +283,8 @@ def test_a_scenario_that_is_not_known_is_refused_with_the_field(
   make: object, tmp_path: pathlib.Path
 ) -> None:
   (row,) = make.rows()
-  row.scenario['wind_mps'] = 3.0
-  error = 'does not know: a scenario with `wind_mps`'
+  row.scenario['rain_mm'] = 3.0
+  error = 'does not know: a scenario with `rain_mm`'
   with pytest.raises(archive.ArchiveError, match=error):
     case_rows.read_sweep(put(tmp_path / 'new', [row]))
 

@@ -1,10 +1,12 @@
-"""What the agreed vehicle can fly, and whether a dance asks for more.
+"""What a vehicle can fly, and whether a dance asks for more.
 
 A controller without strength left flies beside the path, and what observers
 then see is another gesture. So a dance that asks for more is refused before it
 is flown.
 """
 
+from collections.abc import Mapping
+import dataclasses
 import functools
 import math
 
@@ -14,13 +16,47 @@ from waggle_tasks import errors
 from waggle_tasks.protocol import gestures
 from waggle_tasks.protocol import schedule as schedule_lib
 
+GRAVITY_MPS2 = 9.81
 # Along each world axis. Speed and tilt of the stock firmware: 20 degrees of
 # tilt give 3.57 m/s^2 sideways. Upwards is what 0.35 N of thrust leave a
 # vehicle of 27 g; downwards it can fall.
 MAX_SPEED_MPS = 1.0
 MAX_SIDEWAYS_MPS2 = 3.57
 MAX_UP_MPS2 = 3.15
-MAX_DOWN_MPS2 = 9.81
+MAX_DOWN_MPS2 = GRAVITY_MPS2
+
+
+@dataclasses.dataclass(frozen=True)
+class Limits:
+  """The most that a vehicle can fly, along each axis.
+
+  Attributes:
+    speed_mps: Speed.
+    sideways_mps2: Acceleration sideways.
+    up_mps2: Acceleration upwards.
+    down_mps2: Acceleration downwards.
+    sideways_mps3: How fast an acceleration sideways may change.
+  """
+
+  speed_mps: float = MAX_SPEED_MPS
+  sideways_mps2: float = MAX_SIDEWAYS_MPS2
+  up_mps2: float = MAX_UP_MPS2
+  down_mps2: float = MAX_DOWN_MPS2
+  sideways_mps3: float = math.inf
+
+
+# Rotors must turn the body before it goes sideways. Within these limits it is
+# tilted by less than 20 degrees, and flies paths within 30 mm.
+LIMITS: Mapping[str, Limits] = {
+  'ideal': Limits(),
+  'rotors': Limits(
+    sideways_mps2=2.0, down_mps2=MAX_UP_MPS2, sideways_mps3=30.0
+  ),
+}
+DYNAMICS = tuple(LIMITS)
+# Of one rotor, as identified on Crazyflies, and of what is asked of all.
+THRUST_N = (0.0128, 0.12)
+TILT_RAD = math.radians(20.0)
 # How far apart two paths may end and begin, and how fast.
 _JUMP_M, _REST_MPS = 0.005, 0.025
 # Peaks are sought this finely, and in no fewer moments.
@@ -31,18 +67,30 @@ class LimitError(errors.WaggleError):
   """A dance that the vehicle cannot fly."""
 
 
-def check_codebook(codebook: gestures.Codebook) -> None:
+def check_codebook(
+  codebook: gestures.Codebook, limits: Limits = Limits()
+) -> None:
   """Refuses gestures that the vehicle cannot fly.
+
+  Args:
+    codebook: The gestures.
+    limits: What it can fly.
 
   Raises:
     LimitError: naming the gesture, the rule and what it asks for.
   """
   for gesture in codebook.gestures:
-    _check_path(f'gesture {gesture.symbol}', gesture)
+    _check_path(f'gesture {gesture.symbol}', gesture, limits)
 
 
-def check_schedule(schedule: schedule_lib.Schedule) -> None:
+def check_schedule(
+  schedule: schedule_lib.Schedule, limits: Limits = Limits()
+) -> None:
   """Refuses a dance that the vehicle cannot fly.
+
+  Args:
+    schedule: The dance.
+    limits: What it can fly.
 
   Raises:
     LimitError: naming the path, the rule and what it asks for.
@@ -55,7 +103,7 @@ def check_schedule(schedule: schedule_lib.Schedule) -> None:
         f'`{name}` must begin when the one before is over, at {free_s:g} s:'
         f' got {slot.begin_s:g} s'
       )
-    _check_path(name, slot.gesture)
+    _check_path(name, slot.gesture, limits)
     jump_m = math.dist(place_m, _whole(slot.gesture.motion(0.0)[0]))
     if jump_m > _JUMP_M:
       raise LimitError(
@@ -65,30 +113,32 @@ def check_schedule(schedule: schedule_lib.Schedule) -> None:
     free_s, place_m = slot.end_s, _whole(slot.gesture.end_m)
 
 
-def _check_path(name: str, path: schedule_lib.Path) -> None:
+def _check_path(name: str, path: schedule_lib.Path, limits: Limits) -> None:
   if isinstance(path, gestures.Gesture):  # It can be looked up.
-    speed, sideways, up, down, haste = _known_peaks(path)
+    speed, sideways, up, down, jerk, haste = _known_peaks(path)
   else:
-    speed, sideways, up, down, haste = _peaks(path)
+    speed, sideways, up, down, jerk, haste = _peaks(path)
   if not haste <= _REST_MPS:
     raise LimitError(
       f'`{name}` must begin and end at rest: got {haste:.2f} m/s there'
     )
-  slower = max(
-    speed / MAX_SPEED_MPS,
-    *(
-      math.sqrt(asked / limit)
-      for asked, limit in (
-        (sideways, MAX_SIDEWAYS_MPS2), (up, MAX_UP_MPS2), (down, MAX_DOWN_MPS2)
-      )
+  rules = (
+    ('accelerate upwards by at most', up, limits.up_mps2, 'm/s^2', 2),
+    (
+      'accelerate sideways by at most', sideways, limits.sideways_mps2,
+      'm/s^2', 2,
+    ),
+    ('accelerate downwards by at most', down, limits.down_mps2, 'm/s^2', 2),
+    ('fly along an axis at no more than', speed, limits.speed_mps, 'm/s', 1),
+    (
+      'change its acceleration sideways by at most', jerk,
+      limits.sideways_mps3, 'm/s^3', 3,
     ),
   )  # fmt: skip
-  for rule, asked, limit, unit in (
-    ('accelerate upwards by at most', up, MAX_UP_MPS2, 'm/s^2'),
-    ('accelerate sideways by at most', sideways, MAX_SIDEWAYS_MPS2, 'm/s^2'),
-    ('accelerate downwards by at most', down, MAX_DOWN_MPS2, 'm/s^2'),
-    ('fly along an axis at no more than', speed, MAX_SPEED_MPS, 'm/s'),
-  ):
+  slower = max(
+    (asked / limit) ** (1 / power) for _, asked, limit, _, power in rules
+  )
+  for rule, asked, limit, unit, _ in rules:
     if not asked <= limit:
       raise LimitError(
         f'`{name}` must {rule} {limit:g} {unit}, which the vehicle'
@@ -101,8 +151,8 @@ def _peaks(path: schedule_lib.Path) -> tuple[float, ...]:
   """The most that a path asks for.
 
   Returns:
-    Speed, acceleration sideways, upwards and downwards, each along an axis,
-    and the speed at its ends.
+    Speed, acceleration sideways, upwards and downwards, how fast that sideways
+    changes, each along an axis, and the speed at its ends.
   """
   count = max(_MOMENTS, math.ceil(path.duration_s / _STEP_S))
   times_s = np.linspace(0.0, path.duration_s, count + 1)
@@ -115,6 +165,7 @@ def _peaks(path: schedule_lib.Path) -> tuple[float, ...]:
     float(np.abs(seconds[:, ::2]).max()),
     float(seconds[:, 1].max()),
     float(-seconds[:, 1].min()),
+    float(np.abs(np.diff(seconds[:, ::2], axis=0)).max() / times_s[1]),
     float(np.abs(rates[[0, -1]]).max()),
   )
 

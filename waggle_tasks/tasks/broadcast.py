@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from dm_control import composer, mjcf
+from dm_control import mjcf
 from dm_control.composer.observation import observable
 from dm_env import specs
 import numpy as np
@@ -17,6 +17,7 @@ from waggle_tasks.tasks import (
   fleet,
   flights,
   safety,
+  steps,
   switches,
 )
 from waggle_tasks.tasks import clock as clock_lib
@@ -25,7 +26,7 @@ from waggle_tasks.tasks import parts as parts_lib
 OBSERVATIONS = ('camera', 'time_s', 'position_m')
 
 
-class Broadcast(copies.Uncopied, composer.Task):
+class Broadcast(copies.Uncopied, steps.Framed):
   """Observers see a dance, each through its own eye, and fly its message.
 
   Observations are a list of dicts, one for each observer: `camera`
@@ -48,13 +49,13 @@ class Broadcast(copies.Uncopied, composer.Task):
       parts: What the task is made of.
     """
     self._parts = parts
-    self._steps = 1  # Composer's own interval between two values.
     self._observers = {o.mjcf_model.model: o for o in parts.observers}
     self._dancers = parts.dancers
     dancing = {name: each.vehicle for name, each in self._dancers.items()}
     self._fleet = fleet.Fleet(
-      parts.room, {**dancing, **self._observers}, parts.poses
-    )
+      parts.room, {**dancing, **self._observers}, parts.poses,
+      parts.dynamics, parts.agreement.frame_s,
+    )  # fmt: skip
     for visible in self.observables:
       for name in OBSERVATIONS:
         visible[name].enabled = True
@@ -69,6 +70,11 @@ class Broadcast(copies.Uncopied, composer.Task):
   def root_entity(self) -> flight_room.FlightRoom:
     """The arena."""
     return self._parts.room
+
+  @property
+  def fleet(self) -> fleet.Fleet:
+    """The vehicles."""
+    return self._fleet
 
   @property
   def performer(self) -> performer.Performer:
@@ -89,36 +95,6 @@ class Broadcast(copies.Uncopied, composer.Task):
     ]
     usual = [{name: all_[name] for name in OBSERVATIONS} for all_ in everything]
     return [{**a, **b} for a, b in zip(usual, everything, strict=True)]
-
-  def set_timesteps(
-    self, control_timestep: float, physics_timestep: float
-  ) -> None:
-    """See `composer.Task`; a control step is a frame.
-
-    Raises:
-      ClockError: if it is not, or if the physics step is too long.
-    """
-    clock_lib.check_timesteps(
-      control_timestep, physics_timestep, self.agreement
-    )
-    super().set_timesteps(control_timestep, physics_timestep)
-    # Composer counts physics steps: one value for each frame, unless its user
-    # has asked for others.
-    usual, self._steps = self._steps, self.physics_steps_per_control_step
-    for visible in self.observables:
-      for each in visible.values():
-        if each.update_interval == usual:
-          each.update_interval = self._steps
-
-  @composer.Task.control_timestep.setter
-  def control_timestep(self, new_value: float) -> None:
-    """See `set_timesteps`."""
-    self.set_timesteps(new_value, self.physics_timestep)
-
-  @composer.Task.physics_timestep.setter
-  def physics_timestep(self, new_value: float) -> None:
-    """See `set_timesteps`."""
-    self.set_timesteps(self.control_timestep, new_value)
 
   def after_compile(
     self, physics: mjcf.Physics, random_state: np.random.RandomState
@@ -143,11 +119,19 @@ class Broadcast(copies.Uncopied, composer.Task):
       draw = drift.performer if name in self._dancers else drift.observer
       sways[name] = draw(random_state, home.yaw_rad, self.agreement.rate_hz)
     self._fleet.let_drift(sways)
+    self._fleet.begin(physics, self._parts, random_state)
     self._clock = clock_lib.Clock(physics, self.agreement)
+    self._tell()
     for each in self._dancers.values():
       each.vehicle.perform(each.performance.schedule)
       each.vehicle.stop(each.performance.stop_s)
     self._begin_flights()
+
+  def _tell(self) -> None:
+    """Lets observers know what they take for their places."""
+    errors_m = self._fleet.errors_m(self._clock.time_s)
+    for name, each in self._observers.items():
+      each.error_m = errors_m[name]
 
   def _begin_flights(self) -> None:
     """Lets every observer wait at its place."""
@@ -193,7 +177,7 @@ class Broadcast(copies.Uncopied, composer.Task):
       self._fleet.command(physics, name, middle_s, motion)
     wanted = actions.read(action, [*self._observers])
     followed = self._flights.follow(
-      wanted, self.positions_m(physics), self.drifts_m(), time_s
+      wanted, self.positions_m(physics), self._fleet.offsets_m(time_s), time_s
     )
     for name, each in followed.items():
       motion = each.position_m, each.velocity_mps, each.acceleration_mps2
@@ -215,6 +199,16 @@ class Broadcast(copies.Uncopied, composer.Task):
     self._begin_flights()
     physics.forward()
 
+  def before_substep(
+    self,
+    physics: mjcf.Physics,
+    action: Sequence[np.ndarray],
+    random_state: np.random.RandomState,
+  ) -> None:
+    """Flies on, with dynamics that ask for it."""
+    del action, random_state
+    self._fleet.before_substep(physics)
+
   def after_substep(
     self, physics: mjcf.Physics, random_state: np.random.RandomState
   ) -> None:
@@ -229,23 +223,18 @@ class Broadcast(copies.Uncopied, composer.Task):
     """Takes stock of the step."""
     del random_state
     self._clock.tick(physics)
+    self._tell()
     self._contacts = tuple(sorted(self._touched))
-    drifts = self._fleet.drifts(self._clock.time_s)
-    positions_m = self.positions_m(physics)
-    velocities_mps = self.velocities_mps(physics)
-    self._rewards = self._flights.update(
-      {name: positions_m[name] - off[0] for name, off in drifts.items()},
-      {name: velocities_mps[name] - off[1] for name, off in drifts.items()},
-      self.sends_message and self._clock.time_s >= self.performer.end_s,
-    )
+    time_s = self._clock.time_s
+    authorised = self.sends_message and time_s >= self.performer.end_s
+    # Whether it moved is a matter of what it was told, whether it has arrived
+    # one of truth.
+    moved = self._fleet.steady(physics, time_s, told=not authorised)
+    self._rewards = self._flights.update(*moved, authorised)
 
   def positions_m(self, physics: mjcf.Physics) -> dict[str, np.ndarray]:
     """True position of every vehicle, (3,) world metres, by its name."""
     return self._fleet.positions_m(physics)
-
-  def velocities_mps(self, physics: mjcf.Physics) -> dict[str, np.ndarray]:
-    """True velocity of every vehicle, (3,) world m/s, by its name."""
-    return self._fleet.velocities_mps(physics)
 
   def drifts_m(self) -> dict[str, np.ndarray]:
     """How far each vehicle is taken from its reference, (3,), by its name.

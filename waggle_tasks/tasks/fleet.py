@@ -7,8 +7,11 @@ from dm_control import mjcf
 import numpy as np
 
 from waggle_tasks.arenas import flight_room, layouts
-from waggle_tasks.entities import controller, crazyflie
+from waggle_tasks.entities import autopilot, controller, crazyflie
+from waggle_tasks.protocol import agreement as agreement_lib
 from waggle_tasks.tasks import drift as drift_lib
+from waggle_tasks.tasks import estimators, weather
+from waggle_tasks.tasks import parts as parts_lib
 
 Offsets = dict[str, tuple[np.ndarray, np.ndarray]]
 
@@ -18,6 +21,7 @@ class Fleet:
 
   Attributes:
     homes: Where each hovers in this episode.
+    told_m: Where each was last told to be, (3,), before its drift.
   """
 
   def __init__(
@@ -25,6 +29,8 @@ class Fleet:
     room: flight_room.FlightRoom,
     vehicles: Mapping[str, crazyflie.Crazyflie],
     poses: Mapping[str, layouts.Pose],
+    dynamics: str = 'ideal',
+    frame_s: float = agreement_lib.Agreement().frame_s,
   ) -> None:
     """Puts the vehicles into a room.
 
@@ -32,25 +38,38 @@ class Fleet:
       room: The room.
       vehicles: The vehicles by name.
       poses: Where each starts.
+      dynamics: One of `limits.DYNAMICS`.
+      frame_s: How long a control step is.
     """
     self._vehicles, self._poses = dict(vehicles), poses
-    self._joints, self._controllers = [], {}
-    for name, vehicle in self._vehicles.items():
-      pose = poses[name]
-      attached = room.add_vehicle(vehicle, pose)
-      self._joints.append(attached.freejoint)
-      self._controllers[name] = controller.Controller(
-        room.mjcf_model, vehicle, pose.yaw_rad
+    attached = [room.add_vehicle(v, poses[n]) for n, v in vehicles.items()]
+    self._joints = [each.freejoint for each in attached]
+    yaws_rad = {name: poses[name].yaw_rad for name in vehicles}
+    self._autopilot: autopilot.Autopilot | None = None
+    self._controllers: dict[str, controller.Controller | autopilot.Seat] = {}
+    if dynamics == 'rotors':
+      self._autopilot = autopilot.Autopilot(
+        room.mjcf_model, vehicles, [*yaws_rad.values()], frame_s
       )
+      self._controllers |= self._autopilot.seats
+    else:
+      for name, vehicle in vehicles.items():
+        self._controllers[name] = controller.Controller(
+          room.mjcf_model, vehicle, yaws_rad[name]
+        )
     self.homes: dict[str, layouts.Pose] = {}
+    self.told_m: dict[str, np.ndarray] = {}
 
   def after_compile(self, physics: mjcf.Physics) -> None:
     """Finds joints and actuators in the compiled model."""
     joints, axes = physics.bind(self._joints).element_id, np.arange(3)
     self._places = physics.model.jnt_qposadr[joints][:, None] + axes  # (N, 3)
     self._rates = physics.model.jnt_dofadr[joints][:, None] + axes  # (N, 3)
+    if self._autopilot:
+      self._autopilot.after_compile(physics)
     for each in self._controllers.values():
-      each.after_compile(physics)
+      if isinstance(each, controller.Controller):
+        each.after_compile(physics)
 
   def place(
     self,
@@ -69,6 +88,7 @@ class Fleet:
       [self._poses[name] for name in self._vehicles], jitter_m, random_state
     )
     self.homes = dict(zip(self._vehicles, poses, strict=True))
+    self.told_m = {n: np.array(p.position_m) for n, p in self.homes.items()}
     for name, pose in self.homes.items():
       half_rad = pose.yaw_rad / 2
       self._vehicles[name].set_pose(
@@ -76,6 +96,32 @@ class Fleet:
         np.array(pose.position_m),
         np.array([math.cos(half_rad), 0.0, 0.0, math.sin(half_rad)]),
       )
+
+  def begin(
+    self,
+    physics: mjcf.Physics,
+    parts: parts_lib.Parts,
+    random_state: np.random.RandomState,
+  ) -> None:
+    """Begins an episode, with every vehicle at its place.
+
+    Args:
+      physics: The compiled model.
+      parts: What the task is made of.
+      random_state: Of the episode: air and errors are drawn, if there are any.
+    """
+    seconds, height_m = parts.duration_s, parts.agreement.hover_height_m
+    air = weather.draw(parts.air, height_m, seconds, random_state)
+    self._belief = estimators.draw(
+      parts.estimator, len(self._vehicles), seconds, random_state
+    )
+    if self._autopilot:
+      self._autopilot.begin(physics, air, self._belief)
+
+  def before_substep(self, physics: mjcf.Physics) -> None:
+    """Flies what has to be flown from one physics step to the next."""
+    if self._autopilot:
+      self._autopilot.before_substep(physics)
 
   def let_drift(self, sways: Mapping[str, drift_lib.Sway]) -> None:
     """Takes how each vehicle drifts in an episode."""
@@ -99,6 +145,7 @@ class Fleet:
       motion: Where it should be.
       turn_rad: Its heading, counted from where it began.
     """
+    self.told_m[name] = motion[0]
     sway = self._sways[name]
     drift = sway.at(middle_s)
     place_m, velocity_mps, acceleration_mps2 = (
@@ -122,6 +169,55 @@ class Fleet:
     """True velocity of every vehicle, (3,) world m/s, by its name."""
     velocities = physics.data.qvel[self._rates]
     return dict(zip(self._vehicles, velocities, strict=True))
+
+  def flown(self) -> dict[str, tuple[float, np.ndarray, np.ndarray]]:
+    """By name, tilt in rad, thrusts (4,) in N and air (3,) in m/s.
+
+    Only of vehicles with rotors.
+    """
+    pilot = self._autopilot
+    if pilot is None:
+      return {}
+    found = zip(pilot.tilts_rad, pilot.thrusts_n, pilot.air_mps, strict=True)
+    return dict(zip(self._vehicles, found, strict=True))
+
+  def errors_m(self, time_s: float) -> dict[str, np.ndarray]:
+    """How far from itself each vehicle takes itself to be, (3,), by name."""
+    errors = self._belief.errors(time_s)
+    nothing = np.zeros((len(self._vehicles), 3))
+    places_m = nothing if errors is None else errors[0]
+    return dict(zip(self._vehicles, places_m, strict=True))
+
+  def offsets_m(self, time_s: float) -> dict[str, np.ndarray]:
+    """How far from its reference each vehicle is, (3,), by its name.
+
+    By its drift, and by what it does not know.
+    """
+    errors_m = self.errors_m(time_s)
+    drifts = self.drifts(time_s)
+    return {name: off[0] - errors_m[name] for name, off in drifts.items()}
+
+  def steady(
+    self, physics: mjcf.Physics, time_s: float, told: bool
+  ) -> tuple[dict[str, np.ndarray], dict[str, np.ndarray]]:
+    """Places and velocities less the drift, (3,) each, by vehicle.
+
+    Args:
+      physics: The compiled model.
+      time_s: The time.
+      told: Whether places are those that vehicles were told, where they have
+        rotors: what air and errors do to them is nobody's command.
+    """
+    places_m, velocities_mps = (
+      self.positions_m(physics),
+      self.velocities_mps(physics),
+    )
+    for name, (place_m, rate_mps) in self.drifts(time_s).items():
+      places_m[name] = places_m[name] - place_m
+      velocities_mps[name] = velocities_mps[name] - rate_mps
+    if told and self._autopilot:
+      places_m = dict(self.told_m)
+    return places_m, velocities_mps
 
   def drifts(self, time_s: float) -> Offsets:
     """Drift and its velocity at a time, (3,) each, by vehicle."""

@@ -61,7 +61,7 @@ class Flights:
     self,
     wanted: Sequence[reference.Reference],
     positions_m: Mapping[str, np.ndarray],
-    drifts_m: Mapping[str, np.ndarray],
+    offsets_m: Mapping[str, np.ndarray],
     time_s: float,
   ) -> dict[str, reference.Reference]:
     """The references that controllers get for those that observers ask for.
@@ -69,10 +69,11 @@ class Flights:
     Args:
       wanted: Each observer's reference.
       positions_m: By name, (3,) where every vehicle is.
-      drifts_m: By name, (3,) how far each is from its reference by drift.
+      offsets_m: By name, (3,) how far each is from its reference by drift, and
+        by what it does not know.
       time_s: Simulation time.
     """
-    self._judge(wanted, positions_m, drifts_m, time_s)
+    self._judge(wanted, positions_m, offsets_m, time_s)
     return {
       gate.name: gate.follow(each, time_s)
       for gate, each in zip(self._gates, wanted, strict=True)
@@ -82,7 +83,7 @@ class Flights:
     self,
     wanted: Sequence[reference.Reference],
     positions_m: Mapping[str, np.ndarray],
-    drifts_m: Mapping[str, np.ndarray],
+    offsets_m: Mapping[str, np.ndarray],
     time_s: float,
   ) -> None:
     """Accepts or refuses the commands that have waited for others."""
@@ -109,7 +110,7 @@ class Flights:
         gate.judge(self._requests.pop(gate.name), reasons.get(gate.name))
         # A displacement counts from where it was read, drift and all; its
         # height is the agreed one.
-        way.shift(drifts_m[gate.name] * (1.0, 1.0, 0.0))
+        way.shift(offsets_m[gate.name] * (1.0, 1.0, 0.0))
 
   def update(
     self,

@@ -21,6 +21,7 @@ def furnish(
   surroundings: surroundings_lib.Surroundings,
   poses: Mapping[str, layouts.Pose],
   agreement: agreement_lib.Agreement,
+  spinning: bool = False,
 ) -> None:
   """Adds what there is to a room; with the defaults nothing.
 
@@ -29,6 +30,7 @@ def furnish(
     surroundings: What moves in it.
     poses: Where the vehicles start, the performer first.
     agreement: What both sides know.
+    spinning: Whether propellers are drawn as turning.
   """
   audience = surroundings_lib.Audience.of(poses)
   for number in range(surroundings.bystanders):
@@ -43,6 +45,7 @@ def furnish(
         surroundings_lib.CIRCLE_M,
         surroundings_lib.SPREAD_M,
         agreement,
+        spinning,
       )
     )
   if surroundings.occluder_every_s:

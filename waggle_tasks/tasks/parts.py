@@ -1,13 +1,15 @@
 """What a task is made of: built entities and what both sides know."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 import dataclasses
 
 from waggle_tasks import errors
 from waggle_tasks.arenas import flight_room, layouts
-from waggle_tasks.entities import observer, performer
+from waggle_tasks.entities import crazyflie, observer, performer
 from waggle_tasks.protocol import agreement as agreement_lib
+from waggle_tasks.protocol import checks, limits
 from waggle_tasks.protocol import performance as performance_lib
+from waggle_tasks.tasks import air as air_lib
 from waggle_tasks.tasks import drift as drift_lib
 from waggle_tasks.tasks import safety
 
@@ -45,6 +47,9 @@ class Parts:
     minimum_spacing_m: Smallest distance allowed between two vehicles.
     drift: How far vehicles wander from their references.
     others: Vehicles that dance beside the performer.
+    dynamics: One of `limits.DYNAMICS`, that which all vehicles were built for.
+    air: What the air does, where vehicles have rotors.
+    estimator: How they know where they are: one of `estimators.ESTIMATORS`.
   """
 
   room: flight_room.FlightRoom
@@ -58,6 +63,9 @@ class Parts:
   minimum_spacing_m: float = safety.MINIMUM_SPACING_M
   drift: drift_lib.Drift = drift_lib.Drift()
   others: tuple[Dancer, ...] = ()
+  dynamics: str = 'ideal'
+  air: air_lib.Air = air_lib.Air()
+  estimator: str = 'none'
 
   def __post_init__(self) -> None:
     vehicles = [self.performer, *self.observers]
@@ -71,6 +79,25 @@ class Parts:
           f'`poses` must hold one of every vehicle: there is none of {name},'
           f' only of {[*self.poses]}'
         )
+
+    self._check_dynamics(vehicles)
+
+  def _check_dynamics(self, vehicles: Sequence[crazyflie.Crazyflie]) -> None:
+    """Refuses vehicles of other dynamics, and what theirs do not feel."""
+    checks.choice('dynamics', self.dynamics, limits.DYNAMICS, PartsError)
+    for each in vehicles:
+      if each.spinning != (self.dynamics == 'rotors'):
+        raise PartsError(
+          f'`dynamics` of {each.mjcf_model.model} must be those of the task,'
+          f' {self.dynamics!r}: it was built for others'
+        )
+    if self.dynamics == 'ideal' and not (
+      self.air.rests and self.estimator == 'none'
+    ):
+      raise PartsError(
+        "`air` and `estimator` must not be given with `dynamics` 'ideal', which"
+        ' feel no air and know the truth'
+      )
 
   @property
   def dancers(self) -> dict[str, Dancer]:
