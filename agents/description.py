@@ -133,7 +133,7 @@ def _motion(
       places += -away_px, away_px
       away = f'{away_px:.1f} px ({away})'
       slow = f'{slow_px_s:.1f} px/s ({slow})'
-    place += f', a motion leaves its rest by {away}'
+    place += f', a motion leaves its rest by {away}; more where a hover wanders'
     speeds, speed = (slow_px_s,), f'motion ends under {slow}'
   return (
     Measure('position', 'px from anchor', places, place),
