@@ -29,6 +29,7 @@ def run(
   return boundary_worlds.experiment(scene, other, name, SWAP)
 
 
+@pytest.mark.slow
 def test_events_of_the_klt_receiver_come_from_its_own_images(
   short: dict[str, object],
 ) -> None:

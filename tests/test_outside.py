@@ -310,6 +310,7 @@ if __name__ == '__main__':
 """
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
   'command', ['sweep', pytest.param('suite', marks=pytest.mark.slow)]
 )

@@ -65,6 +65,7 @@ def test_it_reads_a_message_and_its_source_is_kept(
   assert 'plain' in archive.read_json(folder / 'provenance.json')['sources']
 
 
+@pytest.mark.slow
 def test_its_raw_images_are_read_again_by_it_and_by_another(
   waggle: Waggle, home: pathlib.Path, flown: tuple[pathlib.Path, str]
 ) -> None:

@@ -122,6 +122,7 @@ def test_the_command_notices_an_event_log_that_was_changed(
   assert '16 of 17 events are the same, 17 now' in child.stdout
 
 
+@pytest.mark.slow
 def test_a_recording_is_read_in_the_language_of_a_run(
   recorded: object, video: Callable[..., pathlib.Path], waggle: Waggle
 ) -> None:

@@ -39,6 +39,7 @@ def launched(fresh: object, session: Session) -> Iterator[Launched]:
   process.wait()
 
 
+@pytest.mark.slow
 def test_a_worker_killed_in_mid_case_leaves_no_trace_in_the_results(
   launched: Launched,
   fresh: object,
@@ -58,7 +59,10 @@ def test_a_worker_killed_in_mid_case_leaves_no_trace_in_the_results(
   assert fresh.results() == reference.results()
 
 
-@pytest.mark.parametrize('number', [signal.SIGTERM, signal.SIGHUP])
+@pytest.mark.parametrize(
+  'number',
+  [signal.SIGTERM, pytest.param(signal.SIGHUP, marks=pytest.mark.slow)],
+)
 def test_a_suite_that_is_asked_to_end_leaves_no_drafts(
   launched: Launched,
   fresh: object,

@@ -123,6 +123,7 @@ def fly(*words: str, **more: object) -> subprocess.CompletedProcess[str]:
   )  # fmt: skip
 
 
+@pytest.mark.slow
 @needs_dask
 def test_a_suite_leaves_the_same_run_folders_from_a_cluster(
   scheduler: pathlib.Path,
@@ -461,6 +462,7 @@ def test_a_worker_of_other_versions_is_refused(digest: str) -> None:
     _work(digest, versions)
 
 
+@pytest.mark.slow
 def test_a_worker_of_another_receiver_is_refused(
   digest: str, tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
