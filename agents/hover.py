@@ -156,7 +156,7 @@ class Hover:
     if self._last is None or not np.array_equal(image[middle], self._last):
       self._last = image[middle].copy()
       grey = difference.grey(image, middle)
-      if self._moved(grey, background[middle], 1.0):
+      if self._wanders or self._moved(grey, background[middle], 1.0):
         self._since_s = time_s
         separation = self._separation = ghost.Separation(
           self._detector, _strict(background), self._config,
@@ -254,21 +254,21 @@ class Hover:
     grey: np.ndarray,
     time_s: float,
   ) -> Departure | None:
-    resting = self._hardly_moved(grey, background, 1.0)
+    moved = self._moved(grey, background, 1.0)
+    resting = not moved or self._hardly_moved(grey, background, 1.0)
     separation.add(grey, time_s)
+    self.visible = resting and self._contrast
     if resting:
       self._since_s = time_s
+      self._wanders |= moved
       separation.forget(self._config.separate_s)
-    self.visible = resting and self._contrast
-    if not resting and (found := separation.find()):
+      if not self._wanders:
+        self._separation = None
+    elif found := separation.find():
       return Departure(
         aligner, self._detector, self._speckled, background,
         self._slack_px, found, separation.greys,
       )  # fmt: skip
-    moved = self._moved(grey, background, 1.0)
-    self._wanders |= moved and resting
-    if not moved and not self._wanders:
-      self._separation = None
     elif config_lib.lasted(self._since_s, time_s, self._config.separate_s):
       self._forget()
     return None

@@ -14,7 +14,8 @@ from waggle_tasks.agents import klt, wandering
 
 _SMOOTH_S = 0.4  # Noise of single pictures is no wandering.
 _HOME_S = 1.0  # In this time a place of rest follows.
-_LITTLE, _LITTLE_PX = 0.0075, 0.25  # In widths, or pixels: less is none.
+_LITTLE, _LITTLE_PX = 0.0075, 0.25  # In widths, or pixels: less is none...
+_HASTY = 2.0  # ...unless so many times its speed is none of a rest.
 
 
 class Wander:
@@ -96,9 +97,11 @@ class Wander:
     self._speeds += time_s * speed_px_s**2
     self._time_s += time_s
     usual_px = math.sqrt(self._ways / self._time_s)
-    self.sways = usual_px > max(_LITTLE * self._width_px, _LITTLE_PX)
+    usual_px_s = math.sqrt(self._speeds / self._time_s)
+    far = usual_px > max(_LITTLE * self._width_px, _LITTLE_PX)
+    self.sways = far or _HASTY * usual_px_s > self._least_px_s
     if self.sways:
-      config, usual_px_s = self._config, math.sqrt(self._speeds / self._time_s)
+      config = self._config
       self.home_px = self._mean_px
       far_px = config.wander_widths * self._width_px
       far_px = max(config.wander_times * usual_px, far_px)
