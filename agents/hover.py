@@ -14,6 +14,7 @@ _REST_PX = 128  # Side of the square in which a target rests.
 _MIN_PIXELS = 4  # Fewest pixels of a motion.
 _MAX_LEFT = 0.1  # Share of a change that a small motion may leave.
 _LEFT = 0.5  # The same of one that wanders, and leans meanwhile.
+_ALIKE = 0.7  # Correlation of a target with itself, a little moved.
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -228,14 +229,16 @@ class Hover:
   ) -> bool:
     """Whether the target is as it was, a little aside.
 
-    It may lean a little more or less, and the room may move too, so that more
-    of the change is left.
+    It may lean a little more or less, so that more of the change is left. Where
+    the room moves too, no more can be asked than that it is there.
     """
     far_px = math.ceil(self._config.rest_px)
     middle = slice(far_px, -far_px)
     inside = middle, middle
     match = cv2.matchTemplate(here, self._rest[inside], cv2.TM_CCOEFF_NORMED)
-    _, _, _, (left, top) = cv2.minMaxLoc(match)
+    _, alike, _, (left, top) = cv2.minMaxLoc(match)
+    if self._slack_px:
+      return alike >= _ALIKE
     if not (0 < left < 2 * far_px and 0 < top < 2 * far_px):
       return False
     height, width = here.shape

@@ -146,6 +146,10 @@ CLAIMS = {
   'sway-noise': _sweep('sway', 2, *_SWAY, table=1, noise_sigma='10'),
   'sway-dancer': _sweep('sway', 2, table=2, performer_drift_m='0.002'),
   'hover': Claim('hover', TEXT, ('drift',)),
+  'hover-dancer': _sweep(
+    'hover-dancer', 2, '--performer_hover=mocap', observers=1,
+    distance_m='1.6', bearing_deg='45',
+  ),
   'clutter': _sweep('clutter', 2, '--floor=clutter', table=0, walls='clutter'),
   'clutter-sway': _sweep(
     'clutter', 2, '--floor=clutter', *_SWAY, table=1, walls='clutter'
