@@ -94,8 +94,7 @@ class Payload:
     Raises:
       PayloadError: if `bits` is not so many characters of 0 and 1.
     """
-    is_bits = isinstance(bits, str) and not set(bits) - {*'01'}
-    if not is_bits or len(bits) != units.num_bits:
+    if not checks.is_bits(bits) or len(bits) != units.num_bits:
       example = f'{2:0{units.num_bits}b}'
       raise PayloadError(
         f'`payload` must be {units.num_bits} characters of 0 and 1, such as'
