@@ -6,8 +6,6 @@ import pytest
 from waggle_tasks.experiments.studies import channel
 from waggle_tasks.protocol import coding
 
-NOISY = channel.Channel(0.1, 0.15)
-
 
 @pytest.mark.parametrize('confusion', channel.CONFUSIONS)
 @pytest.mark.parametrize(

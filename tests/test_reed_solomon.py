@@ -48,7 +48,8 @@ def test_a_field_is_a_field(size: int) -> None:
   for a, b, c in itertools.product(symbols, repeat=3):
     assert field.times(a, b) == field.times(b, a)
     assert field.times(a, b ^ c) == field.times(a, b) ^ field.times(a, c)
-    assert field.times(field.times(a, b), c) == field.times(a, field.times(b, c))
+    product = field.times(field.times(a, b), c)
+    assert product == field.times(a, field.times(b, c))
   for a, b in itertools.product(symbols, symbols[1:]):
     assert field.times(field.over(a, b), b) == a
 
@@ -61,7 +62,8 @@ def test_a_block_has_its_roots_and_begins_with_its_data(
   field = finite_field.of(size)
   roots = [field.power(exponent) for exponent in range(1, parity + 1)]
   assert {field.value(block[::-1], root) for root in roots} <= {0}
-  assert reed_solomon.encode(block[: len(block) - parity], parity, size) == block
+  data = block[: len(block) - parity]
+  assert reed_solomon.encode(data, parity, size) == block
 
 
 def test_a_block_is_that_of_the_textbook() -> None:

@@ -127,14 +127,13 @@ class Coding:
       word = seen[k::blocks]
       block = reed_solomon.decode(word, self.parity, size, spare)
       if block is None:
-        return Reading(None, f'block {k + 1}: {word.count(None)} symbols missing'
-                       ' and others wrong, more than the code bears')  # fmt: skip
+        lost = f'{word.count(None)} of its symbols missing'
+        return Reading(None, f'block {k + 1} cannot be decoded: {lost}')
       whole[k::blocks] = block
     pairs = zip(seen, whole, strict=True)
     corrected = sum(was is not None and was != now for was, now in pairs)
     if corrected and self.check == 'none':
-      return Reading(None, f'{corrected} symbols wrong, and no check to confirm'
-                     ' what they were')  # fmt: skip
+      return Reading(None, f'{corrected} symbols wrong, and no check')
     reason, bits = self._judged(whole[:count], num_bits, size)
     return Reading(bits, reason, missing, corrected)
 
