@@ -1,4 +1,4 @@
-"""A message is believed when what was seen confirms it, and then it is right."""
+"""A message is believed when what was seen confirms it."""
 
 import hypothesis
 from hypothesis import strategies as st

@@ -102,7 +102,8 @@ def simulate(
   zeros = '0' * num_bits
   zero = np.array(code.symbols(zeros, size), np.uint8)
   units = [f'{1 << k:0{num_bits}b}' for k in range(num_bits)]
-  steps = [np.array(code.symbols(unit, size), np.uint8) ^ zero for unit in units]
+  words = [np.array(code.symbols(unit, size), np.uint8) for unit in units]
+  steps = [word ^ zero for word in words]
 
   @functools.lru_cache(maxsize=2**18)
   def outcome(pattern: bytes) -> int:

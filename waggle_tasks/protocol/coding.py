@@ -110,7 +110,7 @@ class Coding:
     total = count + blocks * self.parity
     if len(symbols) != total:
       raise CodingError(
-        f'`symbols` must be {total}, as a message of {num_bits} bits takes, with'
+        f'`symbols` must be {total}, as {num_bits} bits take, with'
         f' None for what could not be told: got {len(symbols)}'
       )
     seen = [
@@ -120,7 +120,7 @@ class Coding:
     ]  # fmt: skip
     missing = seen.count(None)
     if missing and not self.parity:
-      return Reading(None, f'{missing} symbols missing, and no code to fill them')
+      return Reading(None, f'{missing} symbols missing, and no code')
     whole = [symbol or 0 for symbol in seen]
     spare = int(self.check == 'none')
     for k in range(blocks if self.parity else 0):
