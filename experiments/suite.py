@@ -19,7 +19,6 @@ import time
 from absl import flags
 
 from waggle_tasks import suites
-from waggle_tasks.agents import receivers
 from waggle_tasks.experiments import launch
 from waggle_tasks.experiments.flags import (
   engine_flag,
@@ -66,10 +65,10 @@ def main(argv: Sequence[str]) -> int:
   if argv[1:]:
     raise flags.Error(f'takes only flags, --name=value: got {argv[1]!r}.')
   cases = _cases()
-  receivers.make(_RECEIVER.value)
   scenes = [case.scene for case in cases]
+  reader = receiver_flag.chosen(_RECEIVER, scenes)
   for look in (nulls.check, reach.note):
-    if note := look(scenes, _RECEIVER.value):
+    if note := look(scenes, reader):
       print(note, file=sys.stderr)
   # Imported here: to compare results, no simulator is needed.
   from waggle_tasks.experiments.studies import runner, suite_study
@@ -78,14 +77,14 @@ def main(argv: Sequence[str]) -> int:
   stem = pathlib.Path(_SUITE.value).stem
   changes = scenario_fields.flags(scenario_flags.given())
   words = [each.removeprefix('--') for each in changes]
-  name = '-'.join([stem, _RECEIVER.value, *_CASE.value, *words])
+  name = '-'.join([stem, reader, *_CASE.value, *words])
   folder = pathlib.Path(_OUTPUT.value or f'runs/{name}')
   command = provenance.command_line(
     'suite',
-    [f'--suite={_SUITE.value}', f'--receiver={_RECEIVER.value}', *changes],
+    [f'--suite={_SUITE.value}', f'--receiver={reader}', *changes],
   )
   began_s = time.monotonic()
-  study = suite_study.Suite(cases, _RECEIVER.value, run_page.leave)
+  study = suite_study.Suite(cases, reader, run_page.leave)
   rows = runner.run(study, folder, engine, command)
   wall_s = time.monotonic() - began_s
   page = suite_page.write(folder)

@@ -49,10 +49,18 @@ def test_another_message_begins_anew(other: str) -> None:
 def test_what_no_message_has_changes_nothing() -> None:
   cut = packets.Packets(8)
   collector = packets.Collector(cut).add(cut.split('10' * 12)[0])
-  beyond = '00011' + '00010' + '111' + '0' * 8
-  unclean = '00010' + '00010' + '000' + '00000001'
+  beyond = '00011' + '00010' + '111' + '0' * 8 + '0' * 8
+  unclean = '00010' + '00010' + '000' + '0' * 8 + '00000001'
   assert collector.add(beyond) == collector
   assert collector.add(unclean) == collector
+
+
+def test_messages_of_one_length_are_not_mixed() -> None:
+  cut = packets.Packets(8)
+  first, second = cut.split('01' * 8), cut.split('10' * 8)
+  mixed = packets.Collector(cut).add(first[0]).add(second[1])
+  assert mixed.bits is None
+  assert mixed.add(second[0]).bits == '10' * 8
 
 
 def test_at_least_32_packets_and_the_longest_is_told() -> None:
@@ -80,7 +88,7 @@ def test_bits_that_are_no_text_are_none() -> None:
     (lambda: packets.Packets(65), '`chunk_bits` .* 1 and 64: got 65'),
     (lambda: packets.Packets().split(''), '`bits` .* got 0 of them'),
     (lambda: packets.Packets().split('012'), "`bits` .* got '012'"),
-    (lambda: packets.Collector().add('01'), '`packet` must be 80 .* got 2'),
+    (lambda: packets.Collector().add('01'), '`packet` must be 88 .* got 2'),
     (lambda: packets.text_bits(''), '`text` must be at least one'),
     (lambda: packets.text_bits('\ud800'), '`text` must be .* UTF-8'),
     (lambda: packets.text_bits(b'a'), '`text` must be'),

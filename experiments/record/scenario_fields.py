@@ -177,6 +177,8 @@ def flat(fields: Values) -> dict[str, Any]:
       out[part] = 'own'
     elif part == 'layout':
       out[part] = layout_name(value)
+    elif part == 'language' and isinstance(value, Mapping):
+      out[part] = 'own'
     elif isinstance(value, Mapping):
       for inner, number in value.items():
         name, field = names.get((part, inner), (inner, None))

@@ -33,6 +33,19 @@ class Reading:
 
 
 @dataclasses.dataclass(frozen=True)
+class Block:
+  """Symbols of a message of which some follow from the others.
+
+  Attributes:
+    places: Where they are in the message, data first.
+    data: How many of them are data; the others are parity.
+  """
+
+  places: tuple[int, ...]
+  data: int
+
+
+@dataclasses.dataclass(frozen=True)
 class Coding:
   """A check of the bits, and parity of the symbols.
 
@@ -70,6 +83,17 @@ class Coding:
     """
     data, blocks = self._shape(num_bits, size)
     return data + blocks * self.parity
+
+  def blocks(self, num_bits: int, size: int) -> tuple[Block, ...]:
+    """How the symbols of a message belong together; see `count`."""
+    count, blocks = self._shape(num_bits, size)
+    if not self.parity:
+      return tuple(Block((place,), 1) for place in range(count))
+    places = range(count + blocks * self.parity)
+    return tuple(
+      Block((*places[k::blocks],), len(places[k::blocks]) - self.parity)
+      for k in range(blocks)
+    )
 
   def symbols(self, bits: str, size: int) -> tuple[int, ...]:
     """The symbols of a message, each 0 to `size` - 1.
@@ -134,18 +158,27 @@ class Coding:
     corrected = sum(was is not None and was != now for was, now in pairs)
     if corrected and self.check == 'none':
       return Reading(None, f'{corrected} symbols wrong, and no check')
-    reason, bits = self._judged(whole[:count], num_bits, size)
+    reason, bits = self.judge(whole, num_bits, size)
     return Reading(bits, reason, missing, corrected)
 
-  def _judged(
-    self, data: Sequence[int], num_bits: int, size: int
+  def judge(
+    self, word: Sequence[int], num_bits: int, size: int
   ) -> tuple[str, str | None]:
+    """The bits of a message whose blocks are whole, or why there are none.
+
+    Args:
+      word: Its symbols.
+      num_bits: Bits of the message.
+      size: As of `count`.
+    """
+    count, _ = self._shape(num_bits, size)
+    data = word[:count]
     each = size.bit_length() - 1
-    word = ''.join(f'{symbol:0{each}b}' for symbol in data)
+    text = ''.join(f'{symbol:0{each}b}' for symbol in data)
     used = num_bits + crc.width(self.check)
-    if '1' in word[used:]:
+    if '1' in text[used:]:
       return 'what fills the last symbol is not zero', None
-    bits = crc.strip(word[:used], self.check)
+    bits = crc.strip(text[:used], self.check)
     return ('', bits) if bits else (f'{self.check} does not hold', None)
 
   def _shape(self, num_bits: int, size: int) -> tuple[int, int]:

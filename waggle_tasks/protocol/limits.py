@@ -5,7 +5,7 @@ then see is another gesture. So a dance that asks for more is refused before it
 is flown.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 import dataclasses
 import functools
 import math
@@ -13,7 +13,7 @@ import math
 import numpy as np
 
 from waggle_tasks import errors
-from waggle_tasks.protocol import gestures
+from waggle_tasks.protocol import gestures, levels
 from waggle_tasks.protocol import schedule as schedule_lib
 
 GRAVITY_MPS2 = 9.81
@@ -67,20 +67,20 @@ class LimitError(errors.WaggleError):
   """A dance that the vehicle cannot fly."""
 
 
-def check_codebook(
-  codebook: gestures.Codebook, limits: Limits = Limits()
+def check_motions(
+  motions: Iterable[schedule_lib.Path], limits: Limits = Limits()
 ) -> None:
-  """Refuses gestures that the vehicle cannot fly.
+  """Refuses motions that the vehicle cannot fly.
 
   Args:
-    codebook: The gestures.
-    limits: What it can fly.
+    motions: What a language is made of.
+    limits: What the vehicle can fly.
 
   Raises:
-    LimitError: naming the gesture, the rule and what it asks for.
+    LimitError: naming the motion, the rule and what it asks for.
   """
-  for gesture in codebook.gestures:
-    _check_path(f'gesture {gesture.symbol}', gesture, limits)
+  for path in motions:
+    _check_path(f'gesture {path.symbol}', path, limits)
 
 
 def check_schedule(
@@ -114,7 +114,7 @@ def check_schedule(
 
 
 def _check_path(name: str, path: schedule_lib.Path, limits: Limits) -> None:
-  if isinstance(path, gestures.Gesture):  # It can be looked up.
+  if isinstance(path, gestures.Gesture | levels.Stroke):  # To be looked up.
     speed, sideways, up, down, jerk, haste = _known_peaks(path)
   else:
     speed, sideways, up, down, jerk, haste = _peaks(path)

@@ -1,11 +1,14 @@
 """Messages of any length as numbered packets, and a receiver's collection."""
 
 import dataclasses
+import math
 
 from waggle_tasks import errors
-from waggle_tasks.protocol import checks
+from waggle_tasks.protocol import checks, crc
 
 _NUMBER_BITS = 5
+_MARK = 'crc8'
+_CHUNK_BITS = 64  # At most.
 MOST_PACKETS = 2**_NUMBER_BITS
 
 
@@ -18,8 +21,9 @@ class Packets:
   """How messages are cut.
 
   A packet is its number and that of the last one, 5 bits each; how many bits
-  the last one's chunk has, less one, in as few bits as tell it; and its chunk,
-  filled up with zeros. So each packet tells how long the whole message is.
+  the last one's chunk has, less one, in as few bits as tell it; a check of the
+  whole message, 8 bits; and its chunk, filled up with zeros. So each packet
+  tells how long the whole message is, and which one it is a part of.
 
   Attributes:
     chunk_bits: Bits of the message in a packet, 1 to 64.
@@ -28,12 +32,28 @@ class Packets:
   chunk_bits: int = 64
 
   def __post_init__(self) -> None:
-    checks.settle_numbers(self, {'chunk_bits': (1, 64)}, PacketError)
+    bounds = {'chunk_bits': (1, _CHUNK_BITS)}
+    checks.settle_numbers(self, bounds, PacketError)
+
+  @classmethod
+  def of(cls, num_bits: int) -> 'Packets':
+    """As few packets as hold a message of some length, of one size.
+
+    Raises:
+      PacketError: if it is too long.
+    """
+    most = MOST_PACKETS * _CHUNK_BITS
+    num_bits = checks.integer('bits', num_bits, 1, most, PacketError)
+    return cls(math.ceil(num_bits / math.ceil(num_bits / _CHUNK_BITS)))
 
   @property
   def packet_bits(self) -> int:
     """Bits of every packet."""
-    return 2 * _NUMBER_BITS + self._used_bits + self.chunk_bits
+    return self._header_bits + self.chunk_bits
+
+  @property
+  def _header_bits(self) -> int:
+    return 2 * _NUMBER_BITS + self._used_bits + crc.width(_MARK)
 
   @property
   def most_bits(self) -> int:
@@ -55,6 +75,7 @@ class Packets:
     used = len(bits) - starts[-1]
     return tuple(
       self._header(number, len(starts) - 1, used)
+      + mark(bits)
       + bits[start : start + self.chunk_bits].ljust(self.chunk_bits, '0')
       for number, start in enumerate(starts)
     )
@@ -64,8 +85,8 @@ class Packets:
     width = self._used_bits
     return numbers + (f'{used - 1:0{width}b}' if width else '')
 
-  def parse(self, packet: str) -> tuple[int, int, int, str] | None:
-    """The numbers of a packet and of the last, the last's bits, and the chunk.
+  def parse(self, packet: str) -> tuple[int, 'Whole', str] | None:
+    """The number of a packet, what it tells of its message, and its chunk.
 
     Returns:
       None where no message has such a packet.
@@ -75,34 +96,56 @@ class Packets:
     """
     size = self.packet_bits
     checks.bits('packet', packet, size, size, PacketError)
-    number, last = int(packet[:5], 2), int(packet[5:10], 2)
-    used = int('0' + packet[10 : 10 + self._used_bits], 2) + 1
-    chunk = packet[10 + self._used_bits :]
-    kept = used if number == last else self.chunk_bits
-    if number > last or used > self.chunk_bits or '1' in chunk[kept:]:
+    widths = _NUMBER_BITS, _NUMBER_BITS, self._used_bits, crc.width(_MARK)
+    parts, at = [], 0
+    for width in widths:
+      parts.append(packet[at : at + width])
+      at += width
+    number, last, used = (int(f'0{part}', 2) for part in parts[:3])
+    chunk = packet[at:]
+    kept = used + 1 if number == last else self.chunk_bits
+    if number > last or used >= self.chunk_bits or '1' in chunk[kept:]:
       return None
-    return number, last, used, chunk[:kept]
+    return number, Whole(last, used + 1, parts[3]), chunk[:kept]
+
+
+def mark(bits: str) -> str:
+  """What every packet of a message tells of all of it: a check."""
+  return crc.append(bits, _MARK)[len(bits) :]
+
+
+@dataclasses.dataclass(frozen=True)
+class Whole:
+  """What each packet tells of its message.
+
+  Attributes:
+    last: The number of the last packet.
+    used: How many bits that one's chunk has.
+    mark: See `mark`.
+  """
+
+  last: int
+  used: int
+  mark: str
 
 
 @dataclasses.dataclass(frozen=True)
 class Collector:
   """What a receiver has of a message, from any rounds of its packets.
 
-  A packet that contradicts the collection, by another number of packets,
-  another length or another chunk of the same number, begins a new one: two
-  messages are not mixed. Two messages of the same length of which no packet of
-  the same number was seen cannot be told apart. What is no packet of any
+  A packet of another message, by its number of packets, its length, its check
+  or another chunk of the same number, begins a new one: two messages are not
+  mixed. A whole one whose check does not hold is none. What is no packet of any
   message changes nothing.
 
   Attributes:
     packets: How messages are cut.
-    length: The number of the last packet and the bits of its chunk; None
-      before the first packet.
+    whole: What its packets tell of it; None before the first packet.
     chunks: Those that were seen, by their numbers, in order.
   """
 
   packets: Packets = Packets()
-  length: tuple[int, int] | None = None
+  whole: Whole | None = None
   chunks: tuple[tuple[int, str], ...] = ()
 
   def add(self, packet: str) -> 'Collector':
@@ -114,19 +157,20 @@ class Collector:
     parsed = self.packets.parse(packet)
     if parsed is None:
       return self
-    number, last, used, chunk = parsed
+    number, whole, chunk = parsed
     had = dict(self.chunks)
-    if self.length != (last, used) or had.get(number, chunk) != chunk:
+    if self.whole != whole or had.get(number, chunk) != chunk:
       had = {}
     had[number] = chunk
-    return Collector(self.packets, (last, used), (*sorted(had.items()),))
+    return Collector(self.packets, whole, (*sorted(had.items()),))
 
   @property
   def bits(self) -> str | None:
     """The message; None until all of it was seen."""
-    if self.length is None or len(self.chunks) <= self.length[0]:
+    if self.whole is None or len(self.chunks) <= self.whole.last:
       return None
-    return ''.join(chunk for _, chunk in self.chunks)
+    bits = ''.join(chunk for _, chunk in self.chunks)
+    return bits if mark(bits) == self.whole.mark else None
 
 
 def text_bits(text: str) -> str:
