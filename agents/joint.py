@@ -19,6 +19,7 @@ from waggle_tasks.agents import shapes as shapes_lib
 _WANDER_M, _CLOCK_S, _SEEN_M = 0.006, 0.01, 0.002
 # Farther from all that it can fly, it is something else that is seen.
 _FAR_M = 0.03
+_ASTRAY = 0.2  # Of a slot.
 _SLOTS = 3  # What is told from the last ones.
 
 
@@ -51,6 +52,8 @@ class Reading:
       of how far a dancer would be that stayed where it was, or one level
       beside.
     end_seen: What share of their time was seen.
+    rest_m: How far from its hover point the dancer then rested.
+    astray: What share of the track was where no symbol is flown.
     angle_rad: Where it was seen from.
     poses: One for each symbol, and for END.
   """
@@ -63,6 +66,8 @@ class Reading:
   seen: np.ndarray
   end: float
   end_seen: float
+  rest_m: float
+  astray: float
   angle_rad: float
   poses: tuple[Pose, ...]
 
@@ -153,15 +158,20 @@ class Reader:
   def _is_seen(
     self, number: int, times_s: np.ndarray, places_m: np.ndarray
   ) -> np.ndarray:
-    """(T,) whether the dancer can be there; else it is something else."""
-    shapes = self._shapes
+    """(T,) whether the dancer can be there; else it is something else.
+
+    A slot of which much is something else tells nothing. What comes for END is
+    all there is to tell it from another symbol.
+    """
     if number == self._count:
-      paths = shapes_lib.at(shapes.ends, times_s / shapes.end_s)
-    else:
-      paths = shapes_lib.at(shapes.strokes, times_s / shapes.stroke_s)
+      return np.ones(len(times_s), bool)
+    shapes = self._shapes
+    paths = shapes_lib.at(shapes.strokes, times_s / shapes.stroke_s)
     squares = _squares(paths, places_m)
     nearest = squares.min(axis=tuple(range(squares.ndim - 1)))
-    return nearest <= _FAR_M**2
+    near = nearest <= _FAR_M**2
+    whole = near.mean() >= 1 - _ASTRAY if len(near) else False
+    return near & whole
 
   def _costs(self, number: int, pose: Pose) -> np.ndarray:  # (V, S, M)
     """How far what was seen is from each stroke: m^2 s."""
@@ -205,7 +215,8 @@ class Reader:
     """Each slot's pose, from those before and after it too."""
     out = []
     for number in range(self._count + 1):
-      near = range(max(number - 2, -1), min(number + 3, self._count + 1))
+      # END is judged by what came before it, and vouches for nothing.
+      near = range(max(number - 2, -1), min(number + 3, self._count))
       out.append(self._fit(view, word, near, poses[number]))
     return tuple(out)
 
@@ -289,7 +300,13 @@ class Reader:
       _, _, weights_s = self._during(number, poses[number], shapes.slot_s)
       seen[number] = min(weights_s.sum() / shapes.slot_s, 1.0)
     length_s = shapes.end_s + self._rest_s
-    _, _, weights_s = self._during(count, poses[-1], length_s)
+    times_s, places_m, weights_s = self._during(count, poses[-1], length_s)
+    resting = weights_s * (times_s >= shapes.end_s)
+    middle_m = resting @ places_m / max(resting.sum(), 1e-9)
+    rest_m = float(np.hypot(*middle_m)) if resting.any() else np.inf
+    begin_s = self._begin_s(0, poses[0])
+    whole = self._samples.between(begin_s, self._begin_s(count, poses[-1]))
+    astray = 1 - seen.sum() * shapes.slot_s / max(whole.weights_s.sum(), 1e-9)
     path = shapes.ends[view, states[-1]]
     stay = float(_mean_square(path - path[:1])) * shapes.end_s
     stay += float(((path[-1] - path[0]) ** 2).sum()) * self._rest_s
@@ -299,6 +316,7 @@ class Reader:
       np.array(word, int), gains, apart, misfits, near, seen,
       float(ends[states[-1]]) / max(stay, 1e-9),
       min(float(weights_s.sum()) / length_s, 1.0),
+      rest_m, astray,
       float(shapes.angles_rad[view]), poses,
     )  # fmt: skip
 

@@ -38,6 +38,7 @@ class Reading(group.Group):
 
   Attributes:
     max_start: What a START may leave, as a share of its size.
+    max_distance_m: How far away a dancer may be, by the size of START.
     start_rest_s: How much of the rest before START belongs to it.
     min_seen: What share of START, and of END with its rest, must be seen.
     min_clear: How much nearer than any other a symbol must be, as a share of
@@ -45,16 +46,22 @@ class Reading(group.Group):
     max_misfit: How far a symbol may be from what was seen, as a share of the
       squared distance to the next one: 0.25 is half-way.
     max_end: The same of END and the rest after it, beside a rest without END.
+    max_rest_m: How far from the hover point the dancer may rest after END, by
+      what was seen before it.
+    max_astray: What share of the track may be where no symbol is flown.
     max_angle_deg: Largest viewing angle to either side...
     angles: ...and how many, from one side to the other.
   """
 
   max_start: float = group.number(0.15, 0, 1)
+  max_distance_m: float = group.number(6.0, 0.5, 100)
   start_rest_s: float = group.number(0.3, 0, 10)
   min_seen: float = group.number(0.5, 0.1, 1)
   min_clear: float = group.number(0.4, 0, 1)
   max_misfit: float = group.number(0.2, 0, 1)
   max_end: float = group.number(0.25, 0, 1)
+  max_rest_m: float = group.number(0.016, 0, 1)
+  max_astray: float = group.number(0.2, 0, 1)
   max_angle_deg: float = group.number(85.0, 0, 90)
   angles: int = group.number(35, 1, 181)
 
@@ -118,6 +125,7 @@ class JointReceiver:
     config = group.zoomed(config or self.DEFAULT, agreement.camera.zoom)
     self._limits = config.reading
     self._agreement = agreement
+    self._focal_px = agreement.camera.focal_px
     self._language = agreement.spoken
     self._alphabet = self._language.alphabet
     self._blocks = agreement.coding.blocks(
@@ -217,6 +225,8 @@ class JointReceiver:
     fitted = lock.fit(samples, self._usual, begin_s, rest_s)
     if fitted is None or fitted.seen < self._limits.min_seen:
       return None
+    if fitted.scale_px * self._limits.max_distance_m < self._focal_px:
+      return None  # Whoever hovers does not dance in the distance.
     return fitted if fitted.error <= self._limits.max_start else None
 
   def _refined(self, start: lock.Lock) -> lock.Lock:
@@ -248,7 +258,7 @@ class JointReceiver:
 
   def _attempt(self, start: lock.Lock) -> _Read:
     """The bits of a frame that began there, or why there are none."""
-    distance_m = self._agreement.camera.focal_px / start.scale_px
+    distance_m = self._focal_px / start.scale_px
     shape = shapes.seen(self._alphabet, self._angles_rad, distance_m)
     samples = self._history.samples(start.begin_s - self._limits.start_rest_s)
     rest_s = self._language.confirm_s
@@ -265,6 +275,14 @@ class JointReceiver:
     if found.end > limits.max_end:
       return _Read(
         f'what came for END was none: error {found.end:.2f} > {limits.max_end}'
+      )
+    if found.rest_m > limits.max_rest_m:
+      return _Read(
+        f'after END it rested {found.rest_m * 1e3:.0f} mm from where it hovers'
+      )
+    if found.astray > limits.max_astray:
+      return _Read(
+        f'{found.astray:.0%} of what was seen is where no symbol is flown'
       )
     misfit = found.misfit(word)
     if misfit > limits.max_misfit:

@@ -94,17 +94,19 @@ def test_swift_bears_it(spoilt: dict) -> None:
 
 
 @pytest.mark.parametrize(
-  ('language', 'name'),
+  ('language', 'name', 'seed'),
   [
-    *(('swift', name) for name in FRAMES),
-    ('brisk', 'seven_bits'),
-    ('brisk', 'begun_anew'),
+    *(('swift', name, 5) for name in FRAMES),
+    ('swift', 'repeated', 475138),  # START and the levels 7 and 0 are alike.
+    ('brisk', 'seven_bits', 5),
+    ('brisk', 'begun_anew', 5),
+    ('brisk', 'start_repeated', 640181),  # A START where a bit should be.
   ],
 )
 def test_a_decoy_of_the_languages_own_symbols_is_no_message(
-  language: str, name: str
+  language: str, name: str, seed: int
 ) -> None:
-  outcome, _ = fly(language=language, control=name, seed=5)
+  outcome, _ = fly(language=language, control=name, seed=seed)
   assert outcome.decoded is None
   assert not outcome.failures
 

@@ -65,7 +65,10 @@ class Stroke:
 
 @dataclasses.dataclass(frozen=True)
 class Levels:
-  """Equally spaced heights about the hover point.
+  """Heights about the hover point, equally spaced but for it.
+
+  The hover point itself is none, so that END, which leads to it, is as far from
+  every symbol as those are from each other.
 
   Attributes:
     count: How many there are: 2, 4, 8 or 16.
@@ -131,12 +134,13 @@ class Levels:
 
   @property
   def spacing_m(self) -> float:
-    """From one level to the next."""
-    return 2 * self.reach_m / (self.count - 1)
+    """From one level to the next, or to the hover point."""
+    return 2 * self.reach_m / self.count
 
   def height_m(self, level: int) -> float:
     """How high a level is, from the hover point."""
-    return self.spacing_m * level - self.reach_m
+    above = level >= self.count // 2  # None is at the hover point.
+    return self.spacing_m * (level + above) - self.reach_m
 
   @property
   def start(self) -> Stroke:
