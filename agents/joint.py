@@ -17,6 +17,8 @@ from waggle_tasks.agents import shapes as shapes_lib
 # Of a dancer, from slot to slot: how far it may wander, in m, and how far two
 # clocks may part, in s; and how exactly it is seen in one second.
 _WANDER_M, _CLOCK_S, _SEEN_M = 0.006, 0.01, 0.002
+# Farther from all that it can fly, it is something else that is seen.
+_FAR_M = 0.03
 _SLOTS = 3  # What is told from the last ones.
 
 
@@ -141,14 +143,32 @@ class Reader:
     begin_s = self._begin_s(number, pose)
     part = self._samples.between(begin_s, begin_s + length_s)
     places_m = (part.places_px - pose.home_px) / self._scale_px
-    return part.times_s - begin_s, places_m, part.weights_s
+    times_s = part.times_s - begin_s
+    return (
+      times_s,
+      places_m,
+      part.weights_s * self._is_seen(number, times_s, places_m),
+    )
+
+  def _is_seen(
+    self, number: int, times_s: np.ndarray, places_m: np.ndarray
+  ) -> np.ndarray:
+    """(T,) whether the dancer can be there; else it is something else."""
+    shapes = self._shapes
+    if number == self._count:
+      paths = shapes_lib.at(shapes.ends, times_s / shapes.end_s)
+    else:
+      paths = shapes_lib.at(shapes.strokes, times_s / shapes.stroke_s)
+    squares = _squares(paths, places_m)
+    nearest = squares.min(axis=tuple(range(squares.ndim - 1)))
+    return nearest <= _FAR_M**2
 
   def _costs(self, number: int, pose: Pose) -> np.ndarray:  # (V, S, M)
     """How far what was seen is from each stroke: m^2 s."""
     shapes = self._shapes
     times_s, places_m, weights_s = self._during(number, pose, shapes.slot_s)
     paths = shapes_lib.at(shapes.strokes, times_s / shapes.stroke_s)
-    return _squares(paths, places_m, weights_s)
+    return _squares(paths, places_m) @ weights_s
 
   def _end_costs(self, pose: Pose) -> np.ndarray:  # (V, S)
     """The same for END and the rest after it, from each state."""
@@ -156,7 +176,7 @@ class Reader:
     length_s = shapes.end_s + self._rest_s
     times_s, places_m, weights_s = self._during(self._count, pose, length_s)
     paths = shapes_lib.at(shapes.ends, times_s / shapes.end_s)
-    return _squares(paths, places_m, weights_s)
+    return _squares(paths, places_m) @ weights_s
 
   def _step(
     self, cost: np.ndarray, costs: np.ndarray
@@ -296,10 +316,9 @@ def _mean_square(paths: np.ndarray) -> np.ndarray:
 def _squares(
   paths: np.ndarray,  # (..., T, 2)
   places_m: np.ndarray,  # (T, 2)
-  weights_s: np.ndarray,  # (T,)
 ) -> np.ndarray:
-  """How far places are from paths: the integral of squares, (...)."""
-  return ((paths - places_m) ** 2).sum(axis=-1) @ weights_s
+  """Squared distances of places from paths, (..., T)."""
+  return ((paths - places_m) ** 2).sum(axis=-1)
 
 
 def _trace(

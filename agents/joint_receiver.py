@@ -51,7 +51,7 @@ class Reading(group.Group):
 
   max_start: float = group.number(0.15, 0, 1)
   start_rest_s: float = group.number(0.3, 0, 10)
-  min_seen: float = group.number(0.7, 0.1, 1)
+  min_seen: float = group.number(0.5, 0.1, 1)
   min_clear: float = group.number(0.4, 0, 1)
   max_misfit: float = group.number(0.2, 0, 1)
   max_end: float = group.number(0.25, 0, 1)
@@ -68,7 +68,7 @@ class Config:
     reading: When what was seen is a frame.
   """
 
-  tracking: config.Differencing = config.Differencing()
+  tracking: config.Differencing = config.Differencing(learn_s=0.7)
   reading: Reading = Reading()
 
   def __post_init__(self) -> None:

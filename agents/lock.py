@@ -10,6 +10,10 @@ from waggle_tasks.agents import shapes as shapes_lib
 
 # A sample of a track stands for no more than this time.
 _SAMPLE_S = 0.1
+# What is so far from a START, as a share of its size, is something before it:
+# it is left out, a few times over.
+_FAR, _ROUNDS = 0.35, 4
+_FEWEST = 5  # Samples of a START.
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -77,24 +81,39 @@ def fit(
   """
   start_s = shapes.alphabet.start.duration_s
   part = samples.between(begin_s - rest_s, begin_s + start_s)
-  weights = part.weights_s
-  during = weights[part.times_s >= begin_s].sum() / start_s
-  if len(weights) < 4 or not during:
-    return None
-  weights = weights / weights.sum()
   paths = shapes_lib.at(shapes.start, (part.times_s - begin_s) / start_s)
-  mean = weights @ paths  # (V, 2)
-  home_px = weights @ part.places_px
-  paths, places_px = paths - mean[:, None], part.places_px - home_px
-  power = np.einsum('t,vtc,vtc->v', weights, paths, paths)
-  along = np.einsum('t,vtc,tc->v', weights, paths, places_px)
-  power = np.maximum(power, 1e-12)
-  total = np.einsum('t,tc,tc->', weights, places_px, places_px)
-  left = total - along**2 / power
-  best = int(np.argmin(left))
-  scale_px = float(along[best] / power[best])
-  if scale_px <= 0:
-    return None
-  size_px = scale_px * math.sqrt(power[best])
-  error = math.sqrt(max(left[best], 0.0)) / size_px
-  return Lock(begin_s, error, scale_px, home_px - scale_px * mean[best], during)
+  weights_s, begun = part.weights_s.copy(), part.times_s >= begin_s
+  for _ in range(_ROUNDS):
+    during = weights_s[begun].sum() / start_s
+    if np.count_nonzero(weights_s) < _FEWEST or not during:
+      return None
+    view, scale_px, home_px = _least(part.places_px, paths, weights_s)
+    if scale_px <= 0:
+      return None
+    path = paths[view]
+    off_px = np.linalg.norm(part.places_px - home_px - scale_px * path, axis=1)
+    share = weights_s / weights_s.sum()
+    size_px = scale_px * math.sqrt(share @ ((path - share @ path) ** 2).sum(1))
+    rms_px = math.sqrt(share @ off_px**2)
+    far = (off_px > max(_FAR * size_px, 2 * rms_px)) & (weights_s > 0)
+    if not far.any():
+      break
+    weights_s[far] = 0.0
+  error = rms_px / max(size_px, 1e-9)
+  return Lock(begin_s, error, scale_px, home_px, float(during))
+
+
+def _least(
+  places_px: np.ndarray,  # (T, 2)
+  paths: np.ndarray,  # (V, T, 2)
+  weights: np.ndarray,  # (T,)
+) -> tuple[int, float, np.ndarray]:
+  """The view, the scale and the place by which a path fits best."""
+  share = weights / weights.sum()
+  middle_px, middles = share @ places_px, share @ paths
+  off_px, offs = places_px - middle_px, paths - middles[:, None]
+  power = np.maximum(np.einsum('t,vtc,vtc->v', share, offs, offs), 1e-12)
+  along = np.einsum('t,vtc,tc->v', share, offs, off_px)
+  view = int((along**2 / power * (along > 0)).argmax())
+  scale_px = float(along[view] / power[view])
+  return view, scale_px, middle_px - scale_px * middles[view]

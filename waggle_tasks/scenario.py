@@ -314,6 +314,8 @@ class Scenario:
             f' one payload once: choose one of {[*languages.LANGUAGES]}'
           )
       return
+    if self.bits:
+      payload_lib.Data(self.bits)
     for field in ('codebook', 'pauses'):
       if getattr(self, field) != getattr(Scenario, field):
         raise ScenarioError(

@@ -32,7 +32,7 @@ class Stroke:
   """From corner to corner by minimum jerk, at rest at each for an instant.
 
   Attributes:
-    symbol: START or END; UNKNOWN for a stroke that is a symbol among many.
+    symbol: START, END or LEVEL.
     corners_m: (x right, z up) offsets from the hover point in m.
     legs_s: Seconds from each corner to the next.
   """
@@ -164,7 +164,7 @@ class Levels:
     if token is Symbol.END:
       return self._stroke(begin_m, (0.0,), (self.rise_s,), token)
     height_m = self.height_m(int(token))
-    return self._stroke(begin_m, (height_m,), (self.stroke_s,), Symbol.UNKNOWN)
+    return self._stroke(begin_m, (height_m,), (self.stroke_s,), Symbol.LEVEL)
 
   def _stroke(
     self,
