@@ -86,7 +86,7 @@ def check_motions(
 
 def _name(path: schedule_lib.Path) -> str:
   """What a motion of a language is called."""
-  if isinstance(path, levels.Stroke) and path.symbol is Symbol.UNKNOWN:
+  if isinstance(path, levels.Stroke) and path.symbol is Symbol.LEVEL:
     begin_m, end_m = (height_m for _, height_m in path.corners_m)
     return f'stroke from {begin_m:g} m to {end_m:g} m'
   return f'gesture {path.symbol}'
