@@ -15,7 +15,6 @@ import numpy as np
 from waggle_tasks import errors
 from waggle_tasks.protocol import gestures, levels
 from waggle_tasks.protocol import schedule as schedule_lib
-from waggle_tasks.protocol.symbols import Symbol
 
 GRAVITY_MPS2 = 9.81
 # Along each world axis. Speed and tilt of the stock firmware: 20 degrees of
@@ -81,15 +80,7 @@ def check_motions(
     LimitError: naming the motion, the rule and what it asks for.
   """
   for path in motions:
-    _check_path(_name(path), path, limits)
-
-
-def _name(path: schedule_lib.Path) -> str:
-  """What a motion of a language is called."""
-  if isinstance(path, levels.Stroke) and path.symbol is Symbol.LEVEL:
-    begin_m, end_m = (height_m for _, height_m in path.corners_m)
-    return f'stroke from {begin_m:g} m to {end_m:g} m'
-  return f'gesture {path.symbol}'
+    _check_path(f'gesture {path.symbol}', path, limits)
 
 
 def check_schedule(
