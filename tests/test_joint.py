@@ -51,6 +51,16 @@ def test_swift_is_read_within_5_s_of_its_first_stroke_and_brisk_in_12_s() -> (
   assert brisk.final_null_s <= 12.0
 
 
+def test_another_camera_reads_the_same() -> None:
+  outcome, events = fly(
+    language='swift', payload='101101', camera_width_px=320,
+    camera_height_px=240, rate_hz=50,
+  )  # fmt: skip
+  assert not outcome.failures
+  (end,) = [each for each in events if each.word is not None]
+  assert end.distance_m == pytest.approx(1.3, rel=0.1)
+
+
 def test_data_are_read_in_packets_and_nobody_moves() -> None:
   outcome, events = fly(language='swift', bits=BITS * 5)
   assert not outcome.failures
