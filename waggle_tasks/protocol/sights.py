@@ -14,7 +14,7 @@ from waggle_tasks.protocol.symbols import BITS, Symbol
 WIDEST_DEG = 85
 DISTANCE_M = 1.3
 _STEP_DEG = 5
-_POINTS = 33  # Of a path.
+_MOMENTS = 16  # Of a path.
 _SAME_M = 1e-6
 REST = 'rest'
 
@@ -86,10 +86,10 @@ def nearest(alphabet: Alphabet, widest_deg: int = WIDEST_DEG) -> Separation:
   table = np.array([*found.values()])  # (pairs, V)
   views = table.min(axis=0)
   view = int(np.argmax(views <= views.min() + _SAME_M))
-  pair = int(np.argmax(table[:, view] <= views[view] + _SAME_M))
+  first = int(np.argmax(table[:, view] <= views[view] + _SAME_M))
   alike = np.ptp(views) <= _SAME_M
   return Separation(
-    float(views[view]), [*found][pair],
+    float(views[view]), [*found][first],
     None if alike else float(angles_deg[view]),
   )  # fmt: skip
 
@@ -98,7 +98,7 @@ def _among(
   alphabet: Alphabet, state: int, angles_rad: np.ndarray
 ) -> list[tuple[tuple[str, str], np.ndarray]]:
   """How far apart every two strokes from one place are, in each view."""
-  strokes = {
+  strokes: dict[str, schedule.Path] = {
     name_of(alphabet, symbol): alphabet.stroke(state, symbol)
     for symbol in range(alphabet.size)
   }
@@ -131,7 +131,8 @@ def name_of(alphabet: Alphabet, symbol: int) -> str:
 
 
 def _times(length_s: float) -> np.ndarray:
-  return np.linspace(0.0, length_s, _POINTS)
+  """The middles of equal parts of a time: their mean is that of all of it."""
+  return (np.arange(_MOMENTS) + 0.5) * length_s / _MOMENTS
 
 
 def _seen(
