@@ -5,7 +5,7 @@ import functools
 
 import numpy as np
 
-from waggle_tasks.protocol import alphabets, levels
+from waggle_tasks.protocol import alphabets, levels, sights
 
 _POINTS = 65  # Of a path.
 
@@ -69,7 +69,8 @@ def seen(
     angles_rad = np.zeros(1)
   after = np.array([alphabet.after(k) for k in range(alphabet.size)])
   start, strokes, ends = (
-    _project(each, angles_rad, distance_m) for each in (start, strokes, ends)
+    sights.project(each, angles_rad, distance_m)
+    for each in (start, strokes, ends)
   )
   return Shapes(alphabet, angles_rad, start, strokes, ends, after)
 
@@ -89,21 +90,6 @@ def _sampled(
   )
   ends = np.array([alphabets.sample(alphabet.end(i), _POINTS) for i in states])
   return start, strokes, ends
-
-
-def _project(
-  offsets_m: np.ndarray,  # (..., P, 3)
-  angles_rad: np.ndarray,  # (V,)
-  distance_m: float,
-) -> np.ndarray:  # (V, ..., P, 2)
-  """By the pinhole model, with a camera at the height of the hover point."""
-  angles = angles_rad.reshape(-1, *[1] * (offsets_m.ndim - 1))
-  right, up, away = np.moveaxis(offsets_m, -1, 0)
-  nearer_m = right * np.sin(angles) - away * np.cos(angles)
-  across_m = right * np.cos(angles) + away * np.sin(angles)
-  grown = distance_m / np.maximum(distance_m - nearer_m, 0.1 * distance_m)
-  down_m = np.broadcast_to(-up, across_m.shape)
-  return np.stack([across_m, down_m], axis=-1) * grown[..., None]
 
 
 def at(paths: np.ndarray, shares: np.ndarray) -> np.ndarray:

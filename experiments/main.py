@@ -22,6 +22,7 @@ COMMANDS = {
   'bench': 'Measure images, the loop and whole broadcasts on this machine.',
   'sweep': 'Fly a grid of scenarios and map where messages are read.',
   'drift': 'Show how vehicles hover, beside what was measured.',
+  'languages': 'Show how long, how quick and how far apart languages are.',
   'sensitivity': 'Move each open choice both ways and show what changes.',
   'ablate': 'Take parts out of the receivers and show what they are good for.',
   'boundary': 'Show that receivers use their own images and nothing else.',

@@ -11,6 +11,7 @@ sets two result folders side by side and runs nothing.
 
 from collections.abc import Sequence
 import dataclasses
+import hashlib
 import json
 import pathlib
 import sys
@@ -38,6 +39,7 @@ from waggle_tasks.experiments.studies import case_rows
 from waggle_tasks.protocol import checks
 
 ARGUMENTS = '[B]'
+_ROOM = 40  # Characters of a value in a folder's name.
 
 _SUITE = flags.DEFINE_string(
   'suite',
@@ -76,7 +78,7 @@ def main(argv: Sequence[str]) -> int:
   engine, what = engine_flag.engine()
   stem = pathlib.Path(_SUITE.value).stem
   changes = scenario_fields.flags(scenario_flags.given())
-  words = [each.removeprefix('--') for each in changes]
+  words = [_word(each.removeprefix('--')) for each in changes]
   name = '-'.join([stem, reader, *_CASE.value, *words])
   folder = pathlib.Path(_OUTPUT.value or f'runs/{name}')
   command = provenance.command_line(
@@ -95,6 +97,14 @@ def main(argv: Sequence[str]) -> int:
     f' wall time in this call with {what}, {page}'
   )
   return 0 if all(row.as_expected for row in rows) else 1
+
+
+def _word(change: str) -> str:
+  """A change for a folder's name, which has no room for long values."""
+  name, _, value = change.partition('=')
+  if len(value) <= _ROOM:
+    return change
+  return f'{name}={hashlib.sha256(value.encode()).hexdigest()[:8]}'
 
 
 def _cases() -> tuple[suites.Case, ...]:

@@ -71,9 +71,9 @@ class Scenario:
     stop_s: When transmission stops, in s, if `control` is 'interrupted'.
     duration_s: How long the episode lasts at most, in s; unset, 10 s without
       sending, 60 s when interrupted, else 12 s after the dance.
-    language: What is spoken, 'paper' or one of `languages.LANGUAGES`, or in
-      Python a `languages.Language` of your own. A language brings its own
-      gestures and pauses.
+    language: What is spoken, 'paper' or one of `languages.LANGUAGES`, or a
+      `languages.Language` of your own, as a flag a JSON file of one, FILE.json.
+      A language brings its own gestures and pauses.
     bits: Bits that are sent in place of the payload, in numbered packets with
       a check, in any language but the paper's; empty for the payload.
     repeat: How often all of it is said, 1 to 100; once in the paper.

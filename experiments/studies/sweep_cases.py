@@ -79,6 +79,10 @@ def grid(texts: Sequence[str]) -> dict[str, list[object]]:
     if name in out:
       raise SweepError(f'`grid` must name a field once: got {name} again')
     values = [scenario_fields.parse(name, each) for each in listed.split(',')]
+    if any(map(scenario_fields.is_own, values)):
+      raise SweepError(
+        f'`grid` must hold names for {name}: fly a sweep of each file'
+      )
     if len(set(values)) < len(values):
       raise SweepError(f'`grid` must give a value once: got {text!r}')
     out[name] = values

@@ -7,14 +7,14 @@ from typing import Protocol
 import numpy as np
 
 from waggle_tasks import errors
-from waggle_tasks.protocol import gestures, schedule
+from waggle_tasks.protocol import checks, gestures, schedule
 from waggle_tasks.protocol.symbols import BITS, Symbol
 
 Token = Symbol | int | float
 
 
 class AlphabetError(errors.WaggleError):
-  """An alphabet whose symbols have no common clock."""
+  """An alphabet that has no common clock, or a rest that nobody keeps."""
 
 
 class Alphabet(Protocol):
@@ -87,13 +87,18 @@ class Gestures:
 
   Attributes:
     codebook: The gestures; those of 0 and 1 take the same time.
-    rest_s: The rest, in s.
+    rest_s: The rest, 0 to 60 s.
   """
 
   codebook: gestures.Codebook
   rest_s: float
 
   def __post_init__(self) -> None:
+    if not isinstance(self.codebook, gestures.Codebook):
+      raise AlphabetError(
+        f'`codebook` must be a gestures.Codebook: got {self.codebook!r}'
+      )
+    checks.settle_numbers(self, {'rest_s': (0.0, 60.0)}, AlphabetError)
     zero_s, one_s = (self.codebook[bit].duration_s for bit in BITS)
     if zero_s != one_s:
       raise AlphabetError(
@@ -181,12 +186,20 @@ def lay_out(
   return tuple(slots)
 
 
-def sample(path: schedule.Path, points: int) -> np.ndarray:
-  """(points, 3) offsets at equal times: right, up and away."""
-  out = np.zeros((points, 3))
-  for row, at_s in zip(
-    out, np.linspace(0.0, path.duration_s, points), strict=True
-  ):
+def places(path: schedule.Path, times_s: np.ndarray) -> np.ndarray:
+  """(T, 3) offsets: right, up and away; after its end a path rests there.
+
+  Args:
+    path: The path.
+    times_s: (T,) seconds since its begin.
+  """
+  out = np.zeros((len(times_s), 3))
+  for row, at_s in zip(out, np.minimum(times_s, path.duration_s), strict=True):
     place = path.motion(float(at_s))[0]
     row[: len(place)] = place
   return out
+
+
+def sample(path: schedule.Path, points: int) -> np.ndarray:
+  """(points, 3) offsets at equal times: right, up and away."""
+  return places(path, np.linspace(0.0, path.duration_s, points))

@@ -4,10 +4,23 @@ from collections.abc import Sequence
 import dataclasses
 
 from waggle_tasks import errors
-from waggle_tasks.protocol import alphabets, checks, gestures, schedule, timing
+from waggle_tasks.protocol import (
+  alphabets,
+  checks,
+  gestures,
+  schedule,
+  sights,
+  timing,
+)
 from waggle_tasks.protocol import coding as coding_lib
 from waggle_tasks.protocol import levels as levels_lib
 from waggle_tasks.protocol.symbols import BITS, Symbol
+
+# Trackers err by 2 mm, root mean square, at every distance: what is half-way
+# between two strokes that are so far apart is twice that from each.
+APART_M = 0.008
+# Up to here a language must be told from everywhere.
+VIEWS_DEG = 60
 
 
 class LanguageError(errors.WaggleError):
@@ -20,7 +33,8 @@ class Language:
 
   A frame is START, symbols of a count that both sides know, and END; it is
   accepted when all of it came by the clock that START sets, and the dancer then
-  rests.
+  rests. From every view up to 60 degrees, any two symbols must look at least
+  8 mm apart, root mean square over their time; see `sights.nearest`.
 
   Attributes:
     alphabet: What is flown: levels, or gestures with rests between them.
@@ -48,6 +62,25 @@ class Language:
       'pause_s': (0.3, 60.0),
     }
     checks.settle_numbers(self, bounds, LanguageError)
+    if not isinstance(self.coding, coding_lib.Coding):
+      raise LanguageError(f'`coding` must be a Coding: got {self.coding!r}')
+    self.coding.count(1, self.alphabet.size)  # Which refuses what does not fit.
+    self._check_views()
+
+  def _check_views(self) -> None:
+    """Refuses symbols that cannot be told apart."""
+    alike = sights.nearest(self.alphabet, VIEWS_DEG)
+    if alike.distance_m < APART_M:
+      where = (
+        'every view' if alike.angle_deg is None
+        else f'{alike.angle_deg:g} degrees'
+      )  # fmt: skip
+      raise LanguageError(
+        f'`alphabet` must have symbols that look at least {1000 * APART_M:g} mm'
+        f' apart from every view up to {VIEWS_DEG} degrees:'
+        f' {" and ".join(alike.symbols)} are {1000 * alike.distance_m:.1f} mm'
+        f' apart from {where}'
+      )
 
   @property
   def pauses(self) -> timing.Timing:
