@@ -111,6 +111,7 @@ def _picture(picture: bytes | None) -> markup.Markup | None:
     tag(
       'img',
       src=f'data:image/svg+xml;base64,{data}',
+      style='max-width: 100%',
       alt='messages delivered in each condition, a line for each scheme',
     ),
   )

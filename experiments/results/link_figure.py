@@ -80,7 +80,7 @@ def _delivery(axis: 'axes.Axes', rows: Sequence[goodput.Row]) -> None:
     groups = goodput.grouped(members, link_cases.CONDITION)
     tallies = {name: goodput.tally(group) for (name,), group in groups.items()}
     places = [
-      known.index(name) + _BESIDE * (number - len(schemes) / 2)
+      known.index(name) + _BESIDE * (number - (len(schemes) - 1) / 2)
       for name in tallies
     ]
     shares = [each.share for each in tallies.values()]
@@ -92,6 +92,7 @@ def _delivery(axis: 'axes.Axes', rows: Sequence[goodput.Row]) -> None:
       **_look(number),
     )  # fmt: skip
   axis.set_xticks(range(len(known)), known)
+  axis.set_xlim(-0.5, len(known) - 0.5)
   axis.set_ylim(-0.03, 1.03)
   axis.set_ylabel('messages delivered, 95 %')
   axis.grid(axis='y', alpha=0.3)

@@ -6,7 +6,7 @@ import re
 from typing import Any
 
 from waggle_tasks import errors, scenario
-from waggle_tasks.protocol import checks, language_names, languages
+from waggle_tasks.protocol import language_names, languages
 
 _MOST_ROUNDS = 100
 # The paper's language, and the receivers that lack what it asks to ablate.
@@ -66,7 +66,10 @@ class Scheme:
     """
     found = re.fullmatch(r'(.*?)(?: +x(\d+))?', text)
     stem, rounds = (found[1], int(found[2] or 1)) if found else (text, 1)
-    checks.integer('schemes', rounds, 1, _MOST_ROUNDS, SchemeError)
+    if not 1 <= rounds <= _MOST_ROUNDS:
+      raise SchemeError(
+        f'`schemes` must have 1 to {_MOST_ROUNDS} rounds: got {text!r}'
+      )
     if stem in _PAPER:
       return cls(text, scenario.PAPER, _PAPER[stem], rounds)
     known = [*_PAPER, *languages.LANGUAGES]

@@ -1,6 +1,7 @@
 """Languages by name, as they are or with their code changed in place."""
 
 import dataclasses
+from typing import Any
 
 from waggle_tasks.protocol import checks, coding, languages
 
@@ -28,10 +29,10 @@ def find(name: str) -> languages.Language:
   return dataclasses.replace(language, coding=code)
 
 
-def _changes(name: str, text: str) -> dict[str, str | int]:
+def _changes(name: str, text: str) -> dict[str, Any]:
   """The fields of a code that a text changes, as they are declared."""
   kinds = {each.name: each.type for each in dataclasses.fields(coding.Coding)}
-  out: dict[str, str | int] = {}
+  out: dict[str, Any] = {}
   for part in text.split(','):
     field, equals, value = part.partition('=')
     if not equals or not value or field in out:
