@@ -16,7 +16,7 @@ from waggle_tasks.experiments.machine import terminal
 COMMANDS = {
   'broadcast': 'Fly one dance and let every observer read and follow it.',
   'decode': "Read a run's raw captures again, or any video of a dance.",
-  'report': 'Make the page of a run, a suite or a sweep again from its data.',
+  'report': 'Make the page of a run, suite, sweep or link again from its data.',
   'gallery': 'Make the pictures of the documentation.',
   'suite': "Run the paper's evaluation, or your own, beside its results.",
   'bench': 'Measure images, the loop and whole broadcasts on this machine.',

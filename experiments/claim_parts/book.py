@@ -201,6 +201,30 @@ CLAIMS = {
     'last-rest', 2, '--freeze_length_s=600', observers=3, table=0,
     receiver='klt', freeze_s='93', noise_sigma='0',
   ),
+  'link': Claim(
+    'link', ROWS,
+    (
+      'link', '--schemes=swift,swift x3', '--conditions=calm,blackouts',
+      '--broadcasts=4',
+    ),
+  ),
+  'link-paper': Claim(
+    'link-paper', ROWS,
+    (
+      'link', '--schemes=paper,paper without nulls', '--conditions=blackouts',
+      '--broadcasts=2',
+    ),
+  ),
+  'link-places': Claim(
+    'link-places', ROWS,
+    (
+      'link', '--schemes=swift', '--conditions=calm,noise', '--broadcasts=1',
+      '--distances=0.6,1.3,3', '--bearings=0,60',
+    ),
+  ),
+  'link-codes': Claim(
+    'link-codes', UNCHECKED, detail='ten million messages each take minutes'
+  ),
   'paper': Claim(
     'paper', ROWS,
     (
