@@ -211,7 +211,7 @@ CLAIMS = {
   'link-paper': Claim(
     'link-paper', ROWS,
     (
-      'link', '--schemes=paper,paper without nulls', '--conditions=blackouts',
+      'link', '--schemes=paper,paper without nulls', '--conditions=mocap',
       '--broadcasts=2',
     ),
   ),

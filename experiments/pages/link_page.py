@@ -14,7 +14,11 @@ from waggle_tasks.experiments.results import (
   link_tables,
 )
 from waggle_tasks.experiments.results import figures as figures_lib
-from waggle_tasks.experiments.studies import case_rows, link_conditions
+from waggle_tasks.experiments.studies import (
+  case_rows,
+  link_cases,
+  link_conditions,
+)
 
 tag = markup.tag
 
@@ -119,7 +123,7 @@ def _picture(picture: bytes | None) -> markup.Markup | None:
 
 def _conditions(rows: Sequence[goodput.Row]) -> markup.Markup:
   """What the conditions are."""
-  names = dict.fromkeys(row.cell['condition'] for row in rows)
+  names = dict.fromkeys(row.cell[link_cases.CONDITION] for row in rows)
   known = link_conditions.CONDITIONS
   items = [
     tag('li', tag('b', each), f': {known[each].text}')

@@ -26,8 +26,7 @@ class Tally:
     messages: How many were sent.
     delivered: How many were read by all.
     wrong: How many were read as others.
-    unseen: Of the rest, those of which some observer recognised nothing at all;
-      of the others, something was recognised and no message believed.
+    unseen: How many of the others some observer recognised nothing of.
   """
 
   bits: int

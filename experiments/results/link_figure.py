@@ -22,7 +22,7 @@ _COLOURS = (
 # No colour stands alone.
 _MARKS = 'osD^vPX*'
 _DISTANCE = 'distance_m'
-_BESIDE = 0.03  # So that limits of several schemes do not cover each other.
+_BESIDE = 0.05  # So that limits of several schemes do not cover each other.
 
 
 def draw(

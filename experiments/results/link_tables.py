@@ -1,6 +1,7 @@
 """What a link delivers, as tables for people."""
 
 from collections.abc import Sequence
+import math
 import textwrap
 
 from waggle_tasks import scenario
@@ -58,7 +59,7 @@ def _table(rows: Sequence[goodput.Row], factor: str, airtime_s: float) -> Table:
 def _cells(got: goodput.Tally, airtime_s: float) -> tuple[str, ...]:
   times, limits = got.fits(airtime_s), got.limits
   within = [got.within(airtime_s, share) for share in (got.share, *limits)]
-  later = f'{times} x: {within[0]:.1%}', _limits(*within[1:])
+  later = f'{times} x: {_share(within[0])}', _limits(*within[1:])
   return (
     f'{got.seconds:.1f}', f'{got.delivered}/{got.messages}', _limits(*limits),
     str(got.wrong), f'{got.wrong_limit:.1%}', str(got.refused),
@@ -66,8 +67,14 @@ def _cells(got: goodput.Tally, airtime_s: float) -> tuple[str, ...]:
   )  # fmt: skip
 
 
+def _share(share: float) -> str:
+  """In percent; what is less than all is not rounded to it."""
+  return '> 99.9%' if 0.9995 <= share < 1 else f'{share:.1%}'
+
+
 def _limits(low: float, high: float) -> str:
-  return f'{low * 100:.0f}-{high * 100:.0f}'
+  """In whole percent, which hold at least what they stand for."""
+  return f'{math.floor(low * 100)}-{math.ceil(high * 100)}'
 
 
 def legend(airtime_s: float) -> list[str]:

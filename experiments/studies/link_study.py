@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 
-from waggle_tasks.experiments.record import archive
 from waggle_tasks.experiments.studies import case_rows, sweep_cases, sweep_study
 
 
@@ -10,10 +9,7 @@ class Link(sweep_study.Sweep):
   """The broadcasts of a link."""
 
   kind = 'link'
-  files = (
-    case_rows.JOURNAL, case_rows.PROVENANCE, case_rows.SUMMARY, archive.PAGE,
-    *case_rows.LINK_FIGURES,
-  )  # fmt: skip
+  files = (*sweep_study.Sweep.files, *case_rows.LINK_FIGURES)
 
   def __init__(self, cases: Sequence[sweep_cases.Sample]) -> None:
     """Makes a study of `link_cases.cases`."""

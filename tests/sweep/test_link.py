@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Iterator, Sequence
 import dataclasses
-import json
 import pathlib
 import re
 import subprocess
@@ -286,14 +285,15 @@ def test_the_table_has_a_line_for_each_scheme_and_condition(
   head, _, *lines = text.splitlines()
   assert cells(head)[:4] == ['scheme', 'condition', 's', 'delivered']
   assert [cells(line)[:5] for line in lines[:4]] == [
-    ['swift', 'calm', '6.5', '4/4', '40-100'],
-    ['swift', 'noise', '6.5', '2/4', '7-93'],
-    ['swift x3', 'calm', '17.5', '4/4', '40-100'],
-    ['swift x3', 'noise', '17.5', '2/4', '7-93'],
+    ['swift', 'calm', '6.5', '4/4', '39-100'],
+    ['swift', 'noise', '6.5', '2/4', '6-94'],
+    ['swift x3', 'calm', '17.5', '4/4', '39-100'],
+    ['swift x3', 'noise', '17.5', '2/4', '6-94'],
   ]
   noisy = cells(lines[1])
   assert noisy[5:9] == ['0', '52.7%', '0', '2']
-  assert noisy[9:11] == ['0.459', '10 x: 99.9%']
+  assert noisy[9:] == ['0.459', '10 x: 99.9%', '50-100']
+  assert cells(lines[0])[-2:] == ['10 x: 100.0%', '99-100']
   by_distance = text.split('\n\n')[1].splitlines()
   assert cells(by_distance[2])[:4] == ['swift', '1', '6.5', '3/4']
   assert 'losses are independent' in ' '.join(text.split())
