@@ -59,17 +59,15 @@ def _table(rows: Sequence[goodput.Row], factor: str, airtime_s: float) -> Table:
 def _cells(got: goodput.Tally, airtime_s: float) -> tuple[str, ...]:
   times, limits = got.fits(airtime_s), got.limits
   within = [got.within(airtime_s, share) for share in (got.share, *limits)]
-  later = f'{times} x: {_share(within[0])}', _limits(*within[1:])
+  share = f'{within[0]:.1%}'
+  if share == '100.0%' and got.delivered < got.messages:
+    share = '> 99.9%'
+  later = f'{times} x: {share}', _limits(*within[1:])
   return (
     f'{got.seconds:.1f}', f'{got.delivered}/{got.messages}', _limits(*limits),
     str(got.wrong), f'{got.wrong_limit:.1%}', str(got.refused),
     str(got.unseen), f'{got.goodput:.3f}', *(later if times else ('-', '-')),
   )  # fmt: skip
-
-
-def _share(share: float) -> str:
-  """In percent; what is less than all is not rounded to it."""
-  return '> 99.9%' if 0.9995 <= share < 1 else f'{share:.1%}'
 
 
 def _limits(low: float, high: float) -> str:

@@ -73,8 +73,11 @@ def cases(plan: Plan) -> tuple[list[sweep_cases.Sample], list[str]]:
       'bearing_deg': bearing_deg,
     }  # fmt: skip
     try:
-      for number in range(plan.broadcasts):
-        out += _message(scheme, cell, number, plan.observers)
+      out += [
+        sample
+        for number in range(plan.broadcasts)
+        for sample in _message(scheme, cell, number, plan.observers)
+      ]
     except errors.WaggleError as error:
       refused.append(f'{scheme.name}, {condition}: {error}')
   if not out:

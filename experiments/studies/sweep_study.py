@@ -26,7 +26,7 @@ class Sweep(runner.Study[sweep_cases.Sample, case_rows.SweepRow]):
   """The cases of a sweep."""
 
   kind = 'sweep'
-  files = (
+  files: tuple[str, ...] = (
     case_rows.JOURNAL, case_rows.PROVENANCE, case_rows.SUMMARY, archive.PAGE,
     *case_rows.FIGURES,
   )  # fmt: skip

@@ -300,6 +300,12 @@ def test_the_table_has_a_line_for_each_scheme_and_condition(
   assert 'wrong messages: 0 in 16 messages; at most 17.075%' in text
 
 
+def test_what_may_be_lost_is_not_rounded_to_certain(rows: list[Row]) -> None:
+  lines = link_tables.report(rows, 600.0).splitlines()
+  assert cells(lines[2])[-2] == '91 x: 100.0%'
+  assert cells(lines[3])[-2] == '91 x: > 99.9%'
+
+
 def test_an_airtime_that_holds_no_message_has_no_share(rows: list[Row]) -> None:
   line = link_tables.report(rows, 6.0).splitlines()[2]
   assert cells(line)[-2:] == ['-', '-']
