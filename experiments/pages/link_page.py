@@ -111,7 +111,8 @@ def _picture(picture: bytes | None) -> markup.Markup | None:
     return None
   data = base64.b64encode(picture).decode()
   return tag(
-    'figure',
+    'section',
+    tag('h2', 'Delivery and goodput'),
     tag(
       'img',
       src=f'data:image/svg+xml;base64,{data}',
