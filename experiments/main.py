@@ -16,11 +16,12 @@ from waggle_tasks.experiments.machine import terminal
 COMMANDS = {
   'broadcast': 'Fly one dance and let every observer read and follow it.',
   'decode': "Read a run's raw captures again, or any video of a dance.",
-  'report': 'Make the page of a run, a suite or a sweep again from its data.',
+  'report': 'Make the page of a run, suite, sweep or link again from its data.',
   'gallery': 'Make the pictures of the documentation.',
   'suite': "Run the paper's evaluation, or your own, beside its results.",
   'bench': 'Measure images, the loop and whole broadcasts on this machine.',
   'sweep': 'Fly a grid of scenarios and map where messages are read.',
+  'link': 'Compare languages, codes and repetition by what they deliver.',
   'drift': 'Show how vehicles hover, beside what was measured.',
   'languages': 'Show how long, how quick and how far apart languages are.',
   'sensitivity': 'Move each open choice both ways and show what changes.',

@@ -15,6 +15,7 @@ from waggle_tasks.protocol import (
   clock,
   controls,
   gestures,
+  language_names,
   languages,
   packets,
   timing,
@@ -71,7 +72,8 @@ class Scenario:
     stop_s: When transmission stops, in s, if `control` is 'interrupted'.
     duration_s: How long the episode lasts at most, in s; unset, 10 s without
       sending, 60 s when interrupted, else 12 s after the dance.
-    language: What is spoken, 'paper' or one of `languages.LANGUAGES`, or a
+    language: What is spoken, 'paper' or one of `languages.LANGUAGES`, whose
+      code may be changed, such as 'swift:check=crc4,parity=0'; or a
       `languages.Language` of your own, as a flag a JSON file of one, FILE.json.
       A language brings its own gestures and pauses.
     bits: Bits that are sent in place of the payload, in numbered packets with
@@ -237,6 +239,7 @@ class Scenario:
         self.sensor,
         blackout_s=0.0,
         blackout_length_s=sensor_lib.ALWAYS_S,
+        blackout_every_s=0.0,
         blackout_share=1.0,
       )
     return tuple(out)
@@ -300,8 +303,14 @@ class Scenario:
     if self.language == PAPER:
       return None
     choices = [PAPER, *languages.LANGUAGES]
-    checks.choice('language', self.language, choices, ScenarioError)
-    return languages.LANGUAGES[self.language]
+    stem, _, changes = str(self.language).partition(':')
+    checks.choice('language', stem, choices, ScenarioError)
+    if stem == PAPER:
+      raise ScenarioError(
+        f'`language` {PAPER!r} must stand alone, as it has no code to change:'
+        f' got {changes!r} after it'
+      )
+    return language_names.find(str(self.language))
 
   def _check_language(self) -> None:
     """Refuses what the language that is spoken does not take."""
