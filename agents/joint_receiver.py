@@ -276,7 +276,8 @@ class JointReceiver:
       return _Read(
         f'what came for END was none: error {found.end:.2f} > {limits.max_end}'
       )
-    if found.rest_m > limits.max_rest_m:
+    # Gestures all end at the hover point: only END tells their end.
+    if self._alphabet.states > 1 and found.rest_m > limits.max_rest_m:
       return _Read(
         f'after END it rested {found.rest_m * 1e3:.0f} mm from where it hovers'
       )
