@@ -7,11 +7,11 @@ wanders and how its own clock differs, from what it has decided so far.
 """
 
 from collections.abc import Sequence
-import dataclasses
 
 import numpy as np
 
 from waggle_tasks.agents import lock as lock_lib
+from waggle_tasks.agents import reading
 from waggle_tasks.agents import shapes as shapes_lib
 
 # Of a dancer, from slot to slot: how far it may wander, in m, and how far two
@@ -21,68 +21,6 @@ _WANDER_M, _CLOCK_S, _SEEN_M = 0.006, 0.01, 0.002
 _FAR_M = 0.03
 _ASTRAY = 0.2  # Of a slot.
 _SLOTS = 3  # What is told from the last ones.
-
-
-@dataclasses.dataclass(frozen=True, eq=False)
-class Pose:
-  """How a frame lies in the picture during a slot.
-
-  Attributes:
-    home_px: (2,) where the dancer would hover.
-    late_s: How much later than by the clock of START.
-  """
-
-  home_px: np.ndarray
-  late_s: float
-
-
-@dataclasses.dataclass(frozen=True, eq=False)
-class Reading:
-  """A frame as it was read.
-
-  Attributes:
-    word: (N,) its symbols, each the nearest.
-    gains: (N, M) how much farther every other symbol is from what was seen, if
-      all others are as they were read: m^2 s.
-    apart: (N, M, M) how far that is between two symbols, if all is seen.
-    misfits: (N, M) how far a symbol's own stroke is from what was seen...
-    near: ...and how far the nearest other one is from it, (N, M), m^2 s.
-    seen: (N,) what share of its slot was seen.
-    end: How far END and the rest after it are from what was seen, as a share
-      of how far a dancer would be that stayed where it was, or one level
-      beside.
-    end_seen: What share of their time was seen.
-    rest_m: How far from its hover point the dancer then rested.
-    astray: What share of the track was where no symbol is flown.
-    angle_rad: Where it was seen from.
-    poses: One for each symbol, and for END.
-  """
-
-  word: np.ndarray
-  gains: np.ndarray
-  apart: np.ndarray
-  misfits: np.ndarray
-  near: np.ndarray
-  seen: np.ndarray
-  end: float
-  end_seen: float
-  rest_m: float
-  astray: float
-  angle_rad: float
-  poses: tuple[Pose, ...]
-
-  def misfit(self, word: np.ndarray) -> float:
-    """How far the strokes of a word are from what was seen of them.
-
-    As a share of how far the nearest other stroke is from each: 0.25 where
-    everything was half-way between two.
-
-    Args:
-      word: (N,) symbols.
-    """
-    places = np.arange(len(word))
-    near = (self.near[places, word] * self.seen).sum()
-    return float(self.misfits[places, word].sum() / max(near, 1e-9))
 
 
 class Reader:
@@ -109,11 +47,11 @@ class Reader:
     self._count, self._rest_s = count, rest_s
     self._scale_px = found.scale_px
     self._view = 0
-    self._poses: tuple[Pose, ...] = ()
+    self._poses: tuple[reading.Pose, ...] = ()
 
-  def read(self) -> Reading:
+  def read(self) -> reading.Reading:
     """The whole frame."""
-    poses = [Pose(self._found.home_px, 0.0)]
+    poses = [reading.Pose(self._found.home_px, 0.0)]
     cost = np.full(
       (len(self._shapes.angles_rad), self._shapes.ends.shape[1]), np.inf
     )
@@ -129,20 +67,20 @@ class Reader:
     self._poses = self._smooth(self._view, word, poses)
     return self._judge(self._view, word, self._poses)
 
-  def again(self, word: Sequence[int]) -> Reading:
+  def again(self, word: Sequence[int]) -> reading.Reading:
     """The frame as it is seen when it is known to be a word; after `read`."""
     symbols = [*word]
     self._poses = self._smooth(self._view, symbols, [*self._poses])
     return self._judge(self._view, symbols, self._poses)
 
-  def _begin_s(self, number: int, pose: Pose) -> float:
+  def _begin_s(self, number: int, pose: reading.Pose) -> float:
     """When a slot begins; that of END follows the last symbol's."""
     shapes = self._shapes
     after_s = shapes.start_s + number * shapes.slot_s
     return self._found.begin_s + pose.late_s + after_s
 
   def _during(
-    self, number: int, pose: Pose, length_s: float
+    self, number: int, pose: reading.Pose, length_s: float
   ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Seconds since a slot began, places in m, and weights, in a slot."""
     begin_s = self._begin_s(number, pose)
@@ -173,14 +111,14 @@ class Reader:
     whole = near.mean() >= 1 - _ASTRAY if len(near) else False
     return near & whole
 
-  def _costs(self, number: int, pose: Pose) -> np.ndarray:  # (V, S, M)
+  def _costs(self, number: int, pose: reading.Pose) -> np.ndarray:  # (V, S, M)
     """How far what was seen is from each stroke: m^2 s."""
     shapes = self._shapes
     times_s, places_m, weights_s = self._during(number, pose, shapes.slot_s)
     paths = shapes_lib.at(shapes.strokes, times_s / shapes.stroke_s)
     return _squares(paths, places_m) @ weights_s
 
-  def _end_costs(self, pose: Pose) -> np.ndarray:  # (V, S)
+  def _end_costs(self, pose: reading.Pose) -> np.ndarray:  # (V, S)
     """The same for END and the rest after it, from each state."""
     shapes = self._shapes
     length_s = shapes.end_s + self._rest_s
@@ -204,14 +142,16 @@ class Reader:
     rows = np.arange(len(cost))[:, None]
     return least[rows, picked], (picked, before[rows, picked])
 
-  def _follow(self, view: int, word: list[int], last: Pose) -> Pose:
+  def _follow(
+    self, view: int, word: list[int], last: reading.Pose
+  ) -> reading.Pose:
     """The pose after some symbols, from the last ones."""
     first = max(len(word) - _SLOTS, -1)
     return self._fit(view, word, range(first, len(word)), last)
 
   def _smooth(
-    self, view: int, word: list[int], poses: list[Pose]
-  ) -> tuple[Pose, ...]:
+    self, view: int, word: list[int], poses: list[reading.Pose]
+  ) -> tuple[reading.Pose, ...]:
     """Each slot's pose, from those before and after it too."""
     out = []
     for number in range(self._count + 1):
@@ -237,7 +177,9 @@ class Reader:
     path = shapes.strokes[view, state, word[number]]
     return path, shapes.stroke_s, shapes.slot_s
 
-  def _fit(self, view: int, word: list[int], near: range, last: Pose) -> Pose:
+  def _fit(
+    self, view: int, word: list[int], near: range, last: reading.Pose
+  ) -> reading.Pose:
     """How a pose changes so that some slots are where they were seen."""
     # Of right, down and lateness; what is known before.
     left = np.diag([_WANDER_M**-2, _WANDER_M**-2, _CLOCK_S**-2])
@@ -269,11 +211,11 @@ class Reader:
       right[2] -= trust @ (rates * off_m).sum(axis=1)
     x_m, y_m, late_s = np.linalg.solve(left, right)
     home_px = last.home_px + self._scale_px * np.array([x_m, y_m])
-    return Pose(home_px, last.late_s + float(late_s))
+    return reading.Pose(home_px, last.late_s + float(late_s))
 
   def _judge(
-    self, view: int, word: list[int], poses: tuple[Pose, ...]
-  ) -> Reading:
+    self, view: int, word: list[int], poses: tuple[reading.Pose, ...]
+  ) -> reading.Reading:
     """What each symbol stands on, with all others as they were read."""
     shapes, count = self._shapes, self._count
     size = len(shapes.after)
@@ -312,7 +254,7 @@ class Reader:
     stay += float(((path[-1] - path[0]) ** 2).sum()) * self._rest_s
     if len(shapes.ends[view]) > 1:  # From near home, END hardly moves.
       stay = max(stay, float(near[-1, word[-1]]))
-    return Reading(
+    return reading.Reading(
       np.array(word, int), gains, apart, misfits, near, seen,
       float(ends[states[-1]]) / max(stay, 1e-9),
       min(float(weights_s.sum()) / length_s, 1.0),

@@ -11,7 +11,7 @@ import itertools
 
 import numpy as np
 
-from waggle_tasks.agents import joint
+from waggle_tasks.agents import reading
 from waggle_tasks.protocol import coding as coding_lib
 from waggle_tasks.protocol import reed_solomon
 
@@ -28,7 +28,7 @@ def _words(data: int, parity: int, size: int) -> np.ndarray:
 
 
 def decide(
-  found: joint.Reading, blocks: tuple[coding_lib.Block, ...], size: int
+  found: reading.Reading, blocks: tuple[coding_lib.Block, ...], size: int
 ) -> tuple[np.ndarray, float]:
   """The word that is nearest to what was seen, block by block.
 
@@ -55,7 +55,7 @@ def decide(
 
 
 def _nearest(
-  found: joint.Reading, places: np.ndarray, words: np.ndarray
+  found: reading.Reading, places: np.ndarray, words: np.ndarray
 ) -> tuple[np.ndarray, float]:
   """The nearest of some words, and how clear that is."""
   costs = found.gains[places, words].sum(axis=1)
@@ -67,7 +67,7 @@ def _nearest(
 
 
 def _hard(
-  found: joint.Reading, places: np.ndarray, parity: int, size: int
+  found: reading.Reading, places: np.ndarray, parity: int, size: int
 ) -> tuple[np.ndarray, float]:
   """A block whose symbols are decided alone: those that are clear count."""
   alone = np.arange(size)[:, None]
