@@ -1,5 +1,6 @@
 """Where a target was, for as long as a frame takes."""
 
+import bisect
 from collections.abc import Sequence
 import math
 
@@ -46,16 +47,15 @@ class History:
       self._again = []
     self._rows.append(row)
 
-  def forget(self, before_s: float) -> None:
-    """Drops what was before a time, when there is much of it."""
+  def forget(self, now_s: float, keep_s: float) -> None:
+    """Drops what is older than is kept, once that is as much again."""
     rows = self._rows
-    if rows and before_s - rows[0][0] > before_s / 2:
-      self._rows = [row for row in rows if row[0] >= before_s]
+    if rows and now_s - rows[0][0] > 2 * keep_s:
+      self._rows = [row for row in rows if row[0] >= now_s - keep_s]
 
   def samples(self, since_s: float) -> lock.Samples:
     """All since a time."""
-    rows = [*self._rows, *self._again]
-    first = next(
-      (k for k in range(len(rows), 0, -1) if rows[k - 1][0] < since_s), 0
-    )
-    return lock.Samples.of(rows[first:])
+    rows = self._rows
+    first = bisect.bisect_left(rows, since_s, key=lambda row: row[0])
+    again = [row for row in self._again if row[0] >= since_s]
+    return lock.Samples.of([*rows[first:], *again])

@@ -146,7 +146,7 @@ class JointReceiver:
       self._history.rest(before, ghost.anchor_px)
     for track in tracks:
       self._history.add(track)
-    self._history.forget(time_s - 2 * (self._length_s + self._late_s))
+    self._history.forget(time_s, 2 * (self._length_s + self._late_s))
     events = [self._begun(found, time_s) for found in self._search(tracks)]
     return (*events, *self._read(time_s))
 

@@ -1,23 +1,21 @@
 """Languages as a picture: their strokes from two sides, and a whole frame."""
 
 from collections.abc import Mapping
-import io
 import math
 import pathlib
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from waggle_tasks.experiments.machine import files
 from waggle_tasks.experiments.results import figures, language_measure
 from waggle_tasks.protocol import alphabets, languages, schedule, sights
 from waggle_tasks.protocol.symbols import Symbol
 
 if TYPE_CHECKING:
   from matplotlib import axes
+  from matplotlib import figure as figure_lib
 
 NAMES = 'languages.svg', 'languages.png'
-_DPI = 100
 _SIZE_IN = 12.0, 2.6  # Width of all, height of a line.
 _SIDES_DEG = 0, sights.WIDEST_DEG
 _SAID = '101110'  # A frame of which symbols differ.
@@ -41,16 +39,8 @@ def draw(
   Raises:
     FigureError: without matplotlib.
   """
-  if not figures.can_draw():
-    raise figures.FigureError(f'Pictures of languages {figures.NEEDED}.')
-  import matplotlib as mpl
-  from matplotlib import figure as figure_lib
 
-  settings: Any = {'svg.fonttype': 'none', 'svg.hashsalt': 'waggle'}
-  with mpl.rc_context(settings):
-    figure = figure_lib.Figure(
-      (_SIZE_IN[0], _SIZE_IN[1] * len(shown)), layout='constrained'
-    )
+  def paint(figure: 'figure_lib.Figure') -> None:
     lines = figure.subplots(len(shown), len(_SIDES_DEG) + 1, squeeze=False)
     for line, (name, language) in zip(lines, shown.items(), strict=True):
       for axis, side_deg in zip(line, _SIDES_DEG, strict=False):
@@ -58,14 +48,11 @@ def draw(
         side = 'front' if not side_deg else f'side, {side_deg} degrees'
         axis.set_title(f'{pathlib.PurePath(name).name}, {side}', size=10)
       _frame(line[-1], language)
-    vectors, painted = io.BytesIO(), io.BytesIO()
-    figure.savefig(vectors, format='svg', metadata={'Date': None})
-    figure.savefig(painted, format='png', dpi=_DPI)
-  folder.mkdir(parents=True, exist_ok=True)
-  return [
-    files.replace(folder / name, data.getvalue())
-    for name, data in zip(NAMES, (vectors, painted), strict=True)
-  ]
+
+  size_in = _SIZE_IN[0], _SIZE_IN[1] * len(shown)
+  return figures.write(
+    paint, folder, NAMES, size_in, f'Pictures of languages {figures.NEEDED}.'
+  )
 
 
 def _paths(alphabet: sights.Alphabet) -> dict[str, schedule.Path]:

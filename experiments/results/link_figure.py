@@ -1,20 +1,18 @@
 """What a link delivers, as a picture by matplotlib."""
 
 from collections.abc import Sequence
-import io
 import pathlib
 from typing import TYPE_CHECKING, Any
 
-from waggle_tasks.experiments.machine import files
 from waggle_tasks.experiments.results import figures, goodput, palette
 from waggle_tasks.experiments.studies import case_rows, link_cases
 
 if TYPE_CHECKING:
   from matplotlib import axes
+  from matplotlib import figure as figure_lib
 
 MISSING = f'Pictures of a link {figures.NEEDED}.'
 _SIZE_IN = 9.0, 3.6  # Width of all, height of a panel.
-_DPI = 100
 _COLOURS = (
   palette.BLUE, palette.ORANGE, palette.GREEN, palette.VERMILLION,
   palette.PURPLE, palette.SKY, palette.BLACK, palette.YELLOW,
@@ -42,17 +40,9 @@ def draw(
   Raises:
     FigureError: without matplotlib.
   """
-  if not figures.can_draw():
-    raise figures.FigureError(MISSING)
-  import matplotlib as mpl
-  from matplotlib import figure as figure_lib
-
   count = 1 + (len({row.cell[_DISTANCE] for row in rows}) > 1)
-  settings: Any = {'svg.fonttype': 'none', 'svg.hashsalt': 'waggle'}
-  with mpl.rc_context(settings):
-    figure = figure_lib.Figure(
-      (_SIZE_IN[0], _SIZE_IN[1] * count), layout='constrained'
-    )
+
+  def paint(figure: 'figure_lib.Figure') -> None:
     first, *others = figure.subplots(count, 1, squeeze=False).flat
     _delivery(first, rows)
     for axis in others:
@@ -60,16 +50,9 @@ def draw(
     figure.legend(
       *first.get_legend_handles_labels(), loc='outside upper center', ncols=4
     )
-    vectors, painted = io.BytesIO(), io.BytesIO()
-    figure.savefig(vectors, format='svg', metadata={'Date': None})
-    figure.savefig(painted, format='png', dpi=_DPI)
-  folder.mkdir(parents=True, exist_ok=True)
-  return [
-    files.replace(folder / name, data.getvalue())
-    for name, data in zip(
-      case_rows.LINK_FIGURES, (vectors, painted), strict=True
-    )
-  ]
+
+  size_in = _SIZE_IN[0], _SIZE_IN[1] * count
+  return figures.write(paint, folder, case_rows.LINK_FIGURES, size_in, MISSING)
 
 
 def _delivery(axis: 'axes.Axes', rows: Sequence[goodput.Row]) -> None:
