@@ -135,7 +135,11 @@ class Follower:
     support = cv2.countNonZero(weights)
     if support > _COVERED * weights.size:
       return self.lose(time_s, outside=outside)
-    if not config.lost_share <= share <= config.most_share:
+    extent_px = difference.extent_px(weights)
+    if not (
+      config.lost_share <= share <= config.most_share
+      and difference.alike(extent_px, self._ghost.extent_px, config)
+    ):
       found = None if outside else self._search(image)
       if found is None:
         return self.lose(time_s, min(share, 1.0), outside)
@@ -214,6 +218,9 @@ class Follower:
     if len(picked) != 1:
       return None
     _, centre_px = difference.centroid(blobs.only(picked), (0, 0))
+    reach_px = self._config.reach_widths * self._ghost.width_px
+    if reach_px and math.dist(centre_px, self._ghost.anchor_px) > reach_px:
+      return None
     return float(shares[picked[0]]), centre_px
 
   def _repair(self, image: np.ndarray, gate: tuple[slice, slice]) -> None:

@@ -73,7 +73,14 @@ class Differencing(group.Group):
     middle_widths: ...or so many apparent widths.
     lost_share: Smallest share of the hovering target's difference.
     most_share: Largest share of it: a target that comes close grows.
+    most_wider: How many times wider, or narrower, than while it hovered a
+      target may look, 0 for any...
+    most_higher: ...and higher: what is flat looks so from above and below.
+    reach_widths: How far from where it hovered, in apparent widths, it is
+      sought when it was lost, 0 for anywhere.
     separate_s: How long a first motion may take to leave its own ghost.
+    forget_s: How long another picture may hide a scene in which nothing has
+      left its place yet, before that one is learned.
     relearn_s: How long a target may be lost before all is learned anew.
     max_gap_s: Longest time between two images of one rest.
   """
@@ -97,7 +104,11 @@ class Differencing(group.Group):
   middle_widths: float = 1.0
   lost_share: float = group.number(0.1, 0, 1)
   most_share: float = group.number(6.0, 1, 1000)
+  most_wider: float = group.number(0.0, 0, 1000)
+  most_higher: float = group.number(0.0, 0, 1000)
+  reach_widths: float = group.number(0.0, 0, 1000)
   separate_s: float = 4.0
+  forget_s: float = 1.5
   relearn_s: float = 10.0
   max_gap_s: float = 0.2
 

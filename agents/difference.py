@@ -259,8 +259,54 @@ class Blobs:
       near = np.maximum(gaps_px, 0).max(axis=1) <= _PART * (box[2] - box[0])
     return picked[mine]
 
+  def parts(
+    self, picked: np.ndarray, place_px: np.ndarray, size_px: np.ndarray
+  ) -> np.ndarray:
+    """Which of some blobs, given their numbers, are one thing of a known size.
+
+    Args:
+      picked: (M,) numbers, at least one.
+      place_px: (2,) x and y of where it is; what is nearest to it belongs to
+        it...
+      size_px: (2,) ...and what is with that not wider nor higher than this.
+    """
+    boxes = self.boxes[picked]
+    gaps_px = np.maximum(boxes[:, :2] - place_px, place_px - boxes[:, 2:])
+    nearest, *others = np.hypot(*np.maximum(gaps_px, 0).T).argsort()
+    mine, box = [nearest], boxes[nearest]
+    for each in others:
+      low = np.minimum(box[:2], boxes[each, :2])
+      high = np.maximum(box[2:], boxes[each, 2:])
+      if (high - low <= size_px).all():
+        mine, box = [*mine, each], np.append(low, high)
+    return picked[mine]
+
   def only(self, picked: np.ndarray) -> np.ndarray:
     """Weights (H, W) of some of them, given their numbers."""
     return np.where(np.isin(self._labels, picked), self._weights, 0).astype(
       self._weights.dtype
     )
+
+
+def extent_px(weights: np.ndarray) -> np.ndarray:
+  """How wide and high weights (h, w) are spread, (2,) standard deviations."""
+  moments = cv2.moments(weights)
+  if moments['m00'] <= 0.0:
+    return np.zeros(2)
+  squares = np.array([moments['mu20'], moments['mu02']]) / moments['m00']
+  return np.sqrt(np.maximum(squares, 0.0))
+
+
+def alike(
+  extent_px: np.ndarray, known_px: np.ndarray, config: config_lib.Differencing
+) -> bool:
+  """Whether what is spread so may be what was spread like that.
+
+  Args:
+    extent_px: (2,) its width and height...
+    known_px: ...and those known, see `extent_px`.
+    config: How many times more, or less, each may be.
+  """
+  most = np.array([config.most_wider, config.most_higher])
+  more = np.maximum(extent_px, 1e-9) / np.maximum(known_px, 1e-9)
+  return bool(((most == 0) | ((more <= most) & (more * most >= 1))).all())

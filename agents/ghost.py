@@ -19,6 +19,8 @@ _LAG_S = 0.16
 _MAX_CHANGE = 0.2  # ...but for this share.
 # A target and its ghost differ from the background about equally.
 _MIN_BALANCE = 0.25
+# It may be seen in parts, which together are hardly larger than what moves.
+_LARGER = 1.2
 _MIN_SHARE = 0.1  # Of the largest difference; less is a fragment.
 _MARGIN_PX = 3
 _MIN_WIDTH_PX = 5
@@ -32,6 +34,7 @@ class Ghost:
     anchor_px: (2,) its centre.
     width_px: Its width.
     size_px: (2,) width and height of the difference that it makes.
+    extent_px: (2,) how it is spread, see `difference.extent_px`.
     total: The sum of its weights.
     box: Left, top, right and bottom of what it covered.
   """
@@ -39,6 +42,7 @@ class Ghost:
   anchor_px: np.ndarray
   width_px: float
   size_px: np.ndarray
+  extent_px: np.ndarray
   total: float
   box: tuple[int, int, int, int]
 
@@ -105,11 +109,20 @@ class Separation:
     if not len(home):
       return None
     middle_px = np.array([grey.shape[1], grey.shape[0]]) / 2
-    home = blobs.about(home, middle_px)
-    rest, motion = totals[home].sum(), totals[large & ~still].sum()
+    away = np.flatnonzero(large & ~still)
+    if self._config.most_wider and len(away):
+      boxes = blobs.boxes[away]
+      size_px = boxes[:, 2:].max(axis=0) - boxes[:, :2].min(axis=0)
+      home = blobs.parts(home, middle_px, _LARGER * size_px)
+    else:
+      home = blobs.about(home, middle_px)
+    rest, motion = totals[home].sum(), totals[away].sum()
     if min(rest, motion) <= _MIN_BALANCE * max(rest, motion):
       return None
     found = self._ghost(blobs.only(home))
+    extent_px = difference.extent_px(blobs.only(away))
+    if not difference.alike(extent_px, found.extent_px, self._config):
+      return None
     # Others hover beside a target: above or below is the wash of its rotors.
     aside_px = abs(found.anchor_px[0] - middle_px[0])
     config, width_px = self._config, found.width_px
@@ -128,4 +141,5 @@ class Separation:
     )
     size_px = np.array([np.ptp(columns), np.ptp(rows)]) + 1.0
     width_px = float(size_px[0]) - self._detector.blur_px
-    return Ghost(anchor_px, width_px, size_px, total, box)
+    extent_px = difference.extent_px(weights)
+    return Ghost(anchor_px, width_px, size_px, extent_px, total, box)

@@ -89,7 +89,7 @@ class Hover:
     """Notes an image of something else; another scene is learned in time."""
     if math.isnan(self._lost_since_s):
       self._lost_since_s = time_s
-    if config_lib.lasted(self._lost_since_s, time_s, self._config.learn_s):
+    if config_lib.lasted(self._lost_since_s, time_s, self._config.forget_s):
       self._forget()
     elif self._separation is not None:
       self._separation.add(None, time_s)
@@ -120,7 +120,12 @@ class Hover:
       each.loosen(self._slack_px)
 
   def _learn(self, grey: np.ndarray, time_s: float) -> bool:
-    """Adds an image to the background, unless something has moved."""
+    """Adds an image to the background, unless something has moved.
+
+    A picture of nothing, as a black one, is no scene.
+    """
+    if not self._contrast:
+      return False
     scene, middle = self._scene, _middle(grey, self._config.watch_px)
     scene.look(grey)
     self._detector = scene.detector
@@ -132,7 +137,7 @@ class Hover:
       return False
     self._wanders |= moved
     scene.add(grey, time_s)
-    self.visible = self._contrast
+    self.visible = True
     if config_lib.lasted(self._since_s, time_s, self._config.learn_s):
       self._background = scene.background
       self._detector = scene.detector
@@ -165,7 +170,7 @@ class Hover:
         )  # fmt: skip
         whole = difference.grey(image)
         return self._separate(aligner, background, separation, whole, time_s)
-    self.visible = self._contrast
+    self.visible = True
     return None
 
   def _change(
@@ -260,19 +265,22 @@ class Hover:
     moved = self._moved(grey, background, 1.0)
     resting = not moved or self._hardly_moved(grey, background, 1.0)
     separation.add(grey, time_s)
-    self.visible = resting and self._contrast
+    self.visible = resting
     if resting:
       self._since_s = time_s
       self._wanders |= moved
       separation.forget(self._config.separate_s)
       if not self._wanders:
         self._separation = None
-    elif found := separation.find():
+        return None
+    # Who is told by its looks may be gone, whatever the room looks like.
+    told = self._config.most_wider > 0
+    if (told or not resting) and (found := separation.find()):
       return Departure(
         aligner, self._detector, self._speckled, background,
         self._slack_px, found, separation.greys,
       )  # fmt: skip
-    elif config_lib.lasted(self._since_s, time_s, self._config.separate_s):
+    if not resting and config_lib.lasted(self._since_s, time_s, self._config.separate_s):
       self._forget()
     return None
 

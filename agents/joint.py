@@ -105,7 +105,7 @@ class Reader:
       return np.ones(len(times_s), bool)
     shapes = self._shapes
     paths = shapes_lib.at(shapes.strokes, times_s / shapes.stroke_s)
-    squares = _squares(paths, places_m)
+    squares = _squares(paths, places_m, np.ones(2))
     nearest = squares.min(axis=tuple(range(squares.ndim - 1)))
     near = nearest <= _FAR_M**2
     whole = near.mean() >= 1 - _ASTRAY if len(near) else False
@@ -116,7 +116,7 @@ class Reader:
     shapes = self._shapes
     times_s, places_m, weights_s = self._during(number, pose, shapes.slot_s)
     paths = shapes_lib.at(shapes.strokes, times_s / shapes.stroke_s)
-    return _squares(paths, places_m) @ weights_s
+    return _squares(paths, places_m, shapes.tell) @ weights_s
 
   def _end_costs(self, pose: reading.Pose) -> np.ndarray:  # (V, S)
     """The same for END and the rest after it, from each state."""
@@ -124,7 +124,7 @@ class Reader:
     length_s = shapes.end_s + self._rest_s
     times_s, places_m, weights_s = self._during(self._count, pose, length_s)
     paths = shapes_lib.at(shapes.ends, times_s / shapes.end_s)
-    return _squares(paths, places_m) @ weights_s
+    return _squares(paths, places_m, shapes.tell) @ weights_s
 
   def _step(
     self, cost: np.ndarray, costs: np.ndarray
@@ -245,7 +245,7 @@ class Reader:
     times_s, places_m, weights_s = self._during(count, poses[-1], length_s)
     resting = weights_s * (times_s >= shapes.end_s)
     middle_m = resting @ places_m / max(resting.sum(), 1e-9)
-    rest_m = float(np.hypot(*middle_m)) if resting.any() else np.inf
+    rest_m = float(np.hypot(*middle_m * shapes.tell)) if resting.any() else np.inf
     begin_s = self._begin_s(0, poses[0])
     whole = self._samples.between(begin_s, self._begin_s(count, poses[-1]))
     astray = 1 - seen.sum() * shapes.slot_s / max(whole.weights_s.sum(), 1e-9)
@@ -276,9 +276,10 @@ def _mean_square(paths: np.ndarray) -> np.ndarray:
 def _squares(
   paths: np.ndarray,  # (..., T, 2)
   places_m: np.ndarray,  # (T, 2)
+  tell: np.ndarray,  # (2,)
 ) -> np.ndarray:
-  """Squared distances of places from paths, (..., T)."""
-  return ((paths - places_m) ** 2).sum(axis=-1)
+  """Squared distances of places from paths, (..., T), where they tell."""
+  return (paths - places_m) ** 2 @ tell
 
 
 def _trace(

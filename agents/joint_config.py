@@ -48,7 +48,16 @@ class Config:
     reading: When what was seen is a frame.
   """
 
-  tracking: config.Differencing = config.Differencing(learn_s=0.7)
+  tracking: config.Differencing = config.Differencing(
+    learn_s=0.7,
+    lost_share=0.4,
+    most_share=2.5,
+    most_wider=1.5,
+    most_higher=2.5,
+    reach_widths=6.0,
+    forget_s=2.5,
+    relearn_s=3.0,
+  )
   reading: Reading = Reading()
 
   def __post_init__(self) -> None:

@@ -26,6 +26,7 @@ from waggle_tasks.protocol import frame, packets, payload
 from waggle_tasks.protocol.symbols import Symbol
 
 _USUAL_M = 1.3  # A distance before any is known.
+_STEP_S = 0.04  # Apart are begins of START that are tried.
 _REFINED_S = (0.02, 0.01, 0.005)  # Steps in which the begin of START is told.
 _BEST_S = 0.12  # For how long no better START may come.
 _LATE_S = 0.2  # What a frame may be late.
@@ -111,6 +112,7 @@ class JointReceiver:
     self._rests: deque[float] = deque()  # Times before its first motion.
     self._open: list[_Open] = []
     self._best: lock.Lock | None = None  # The best START of late.
+    self._tried_s = -math.inf  # The last one that was tried.
     self._after_s = -math.inf  # When the next one may begin.
 
   def step(
@@ -154,8 +156,7 @@ class JointReceiver:
     """Every START that is over, and was seen best a moment ago."""
     found, shape = [], self._usual
     length_s = shape.alphabet.start.duration_s
-    for track in tracks:
-      begin_s = track.time_s - length_s
+    for begin_s in self._begins(tracks, length_s):
       fitted = self._fit(begin_s)
       if fitted is not None and begin_s > self._after_s:
         best = self._best
@@ -167,6 +168,19 @@ class JointReceiver:
         self._best = None
         found.append(start)
     return found
+
+  def _begins(
+    self, tracks: Sequence[klt.Track], length_s: float
+  ) -> np.ndarray:
+    """When a START of some length may have begun that was not tried before.
+
+    Images may be rare, or not come: what begins between two is found too.
+    """
+    first_s, last_s = tracks[0].time_s - length_s, tracks[-1].time_s - length_s
+    since_s = max(self._tried_s, first_s - length_s)
+    self._tried_s = last_s
+    count = math.ceil((last_s - since_s) / _STEP_S - 1e-6)
+    return last_s - _STEP_S * np.arange(count)[::-1]
 
   def _fit(self, begin_s: float) -> lock.Lock | None:
     """A START that began then, if it may have been one."""

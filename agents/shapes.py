@@ -21,6 +21,8 @@ class Shapes:
     strokes: (V, S, M, P, 2) by state and symbol.
     ends: (V, S, P, 2) END by state.
     after: (M,) the state after each symbol.
+    tell: (2,) 1 along right and down where symbols differ, 0 where not: there
+      whoever hovers wanders, and says nothing.
   """
 
   alphabet: levels.Levels | alphabets.Gestures
@@ -29,6 +31,7 @@ class Shapes:
   strokes: np.ndarray
   ends: np.ndarray
   after: np.ndarray
+  tell: np.ndarray
 
   @property
   def start_s(self) -> float:
@@ -65,14 +68,16 @@ def seen(
     distance_m: How far away the camera is: what comes nearer grows.
   """
   start, strokes, ends = _sampled(alphabet)
-  if not any(np.any(each[..., ::2]) for each in (start, strokes, ends)):
+  upright = not any(np.any(each[..., ::2]) for each in (start, strokes, ends))
+  if upright:
     angles_rad = np.zeros(1)
   after = np.array([alphabet.after(k) for k in range(alphabet.size)])
   start, strokes, ends = (
     sights.project(each, angles_rad, distance_m)
     for each in (start, strokes, ends)
   )
-  return Shapes(alphabet, angles_rad, start, strokes, ends, after)
+  tell = np.array([0.0 if upright else 1.0, 1.0])
+  return Shapes(alphabet, angles_rad, start, strokes, ends, after, tell)
 
 
 @functools.cache
