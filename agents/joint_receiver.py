@@ -19,6 +19,7 @@ from waggle_tasks.agents import (
   lock,
   receiver,
   shapes,
+  slots,
   soft,
 )
 from waggle_tasks.protocol import agreement as agreement_lib
@@ -47,10 +48,14 @@ class _Read:
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class _Open:
-  """A frame that has begun: its START, and when it can be read."""
+  """A frame that has begun: its START, and when it can be read.
+
+  A first time by this clock, and a last one by one that is slow.
+  """
 
   start: lock.Lock
   due_s: float
+  last: bool = False
 
 
 class JointReceiver:
@@ -215,27 +220,36 @@ class JointReceiver:
       if read.bits is not None:  # None that began meanwhile is one.
         self._open = [o for o in self._open if o.start.begin_s > time_s]
         return [*events, *self._accept(read, read.bits, time_s)]
-      if time_s >= each.due_s + self._late_s:
-        self._open.remove(each)
+      self._open.remove(each)
+      if each.last:
         events.append(_rejected(read.reason, time_s))
+      else:
+        last = _Open(each.start, each.due_s + self._late_s, last=True)
+        self._open.append(last)
     return events
 
   def _attempt(self, start: lock.Lock) -> _Read:
     """The bits of a frame that began there, or why there are none."""
+    limits = self._limits
     distance_m = self._focal_px / start.scale_px
     shape = shapes.seen(self._alphabet, self._angles_rad, distance_m)
-    samples = self._history.samples(start.begin_s - self._limits.start_rest_s)
-    rest_s = self._language.confirm_s
-    reader = joint.Reader(samples, shape, start, self._count, rest_s)
-    found, limits = reader.read(), self._limits
+    before_s, after_s = limits.start_rest_s, self._language.confirm_s
+    reader = joint.Reader(
+      slots.Slots(
+        self._history.samples(start.begin_s - before_s),
+        shape, start.begin_s, self._count, before_s, after_s,
+      ),
+      start,
+    )  # fmt: skip
+    found = reader.judged()
     if found.end_seen < limits.min_seen:
       return _Read(f'END was seen for {found.end_seen:.0%} of its time')
-    word, clear = soft.decide(found, self._blocks, self._alphabet.size)
     for _ in range(_ROUNDS):
-      if (word == found.word).all():
+      word, clear = soft.decide(reader, self._blocks, self._alphabet.size)
+      if (word == reader.word).all():
         break
-      found = reader.again(word.tolist())
-      word, clear = soft.decide(found, self._blocks, self._alphabet.size)
+      reader.again(word)
+    found = reader.judged()
     if found.end > limits.max_end:
       return _Read(
         f'what came for END was none: error {found.end:.2f} > {limits.max_end}'
@@ -249,10 +263,9 @@ class JointReceiver:
       return _Read(
         f'{found.astray:.0%} of what was seen is where no symbol is flown'
       )
-    misfit = found.misfit(word)
-    if misfit > limits.max_misfit:
+    if found.misfit > limits.max_misfit:
       return _Read(
-        f'what came for symbols were none: error {misfit:.2f} >'
+        f'what came for symbols were none: error {found.misfit:.2f} >'
         f' {limits.max_misfit}'
       )
     if clear < limits.min_clear:
@@ -266,6 +279,7 @@ class JointReceiver:
     if bits is None:
       return _Read(reason)
     angle_deg = math.degrees(found.angle_rad)
+    distance_m = self._focal_px / found.scale_px
     return _Read('', bits, symbols, clear, angle_deg, distance_m)
 
   def _accept(

@@ -1,21 +1,11 @@
-"""A frame as it was read, with what each of its symbols stands on."""
+"""A frame as it was read, with what it stands on."""
 
+from collections.abc import Sequence
 import dataclasses
 
 import numpy as np
 
-
-@dataclasses.dataclass(frozen=True, eq=False)
-class Pose:
-  """How a frame lies in the picture during a slot.
-
-  Attributes:
-    home_px: (2,) where the dancer would hover.
-    late_s: How much later than by the clock of START.
-  """
-
-  home_px: np.ndarray
-  late_s: float
+from waggle_tasks.agents import slots
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -23,13 +13,9 @@ class Reading:
   """A frame as it was read.
 
   Attributes:
-    word: (N,) its symbols, each the nearest.
-    gains: (N, M) how much farther every other symbol is from what was seen, if
-      all others are as they were read: m^2 s.
-    apart: (N, M, M) how far that is between two symbols, if all is seen.
-    misfits: (N, M) how far a symbol's own stroke is from what was seen...
-    near: ...and how far the nearest other one is from it, (N, M), m^2 s.
-    seen: (N,) what share of its slot was seen.
+    misfit: How far its strokes are from what was seen of them, as a share of
+      how far the nearest other stroke is from each: 0.25 where everything was
+      half-way between two.
     end: How far END and the rest after it are from what was seen, as a share
       of how far a dancer would be that stayed where it was, or one level
       beside.
@@ -37,31 +23,61 @@ class Reading:
     rest_m: How far from its hover point the dancer then rested.
     astray: What share of the track was where no symbol is flown.
     angle_rad: Where it was seen from.
-    poses: One for each symbol, and for END.
+    scale_px: Pixels of a metre at the dancer.
   """
 
-  word: np.ndarray
-  gains: np.ndarray
-  apart: np.ndarray
-  misfits: np.ndarray
-  near: np.ndarray
-  seen: np.ndarray
+  misfit: float
   end: float
   end_seen: float
   rest_m: float
   astray: float
   angle_rad: float
-  poses: tuple[Pose, ...]
+  scale_px: float
 
-  def misfit(self, word: np.ndarray) -> float:
-    """How far the strokes of a word are from what was seen of them.
 
-    As a share of how far the nearest other stroke is from each: 0.25 where
-    everything was half-way between two.
+def judge(
+  frame: slots.Slots,
+  word: np.ndarray,  # (N,)
+  view: int,
+  poses: Sequence[slots.Pose],  # Of START, each symbol, and END.
+) -> Reading:
+  """What a word of a frame stands on, from a view, by poses."""
+  shapes, count = frame.shapes, frame.count
+  states = [0, *(int(shapes.after[symbol]) for symbol in word)]
+  misfit = near = seen_s = 0.0
+  for number, (state, symbol) in enumerate(zip(states, word, strict=False)):
+    part = frame.part(number, poses[number + 1])
+    own = frame.costs(number, part)[view, state, symbol]
+    nearest = _nearest(shapes.strokes[view, state], symbol) * shapes.stroke_s
+    part_s = min(float(part.weights_s.sum()), shapes.slot_s)
+    misfit, near = misfit + own, near + nearest * part_s / shapes.slot_s
+    seen_s += part_s
+  begin_s = frame.starts_s(0, poses[1])
+  whole = frame.samples.between(begin_s, frame.starts_s(count, poses[-1]))
+  ended = frame.part(count, poses[-1])
+  end_s = float(ended.weights_s.sum())
+  resting_s = ended.weights_s * (ended.times_s >= shapes.end_s)
+  middle_m = resting_s @ ended.places_m / max(resting_s.sum(), 1e-9)
+  rest_m = float(np.hypot(*middle_m * shapes.tell))
+  path = shapes.ends[view, states[-1]]
+  stay = float(((path - path[:1]) ** 2).sum(axis=-1).mean()) * shapes.end_s
+  stay += float(((path[-1] - path[0]) ** 2).sum()) * frame.after_s
+  if len(shapes.ends[view]) > 1:  # From near home, END hardly moves.
+    last = shapes.strokes[view, states[-2]]
+    stay = max(stay, _nearest(last, word[-1]) * shapes.stroke_s)
+  error = float(frame.costs(count, ended)[view, states[-1]])
+  return Reading(
+    float(misfit / max(near, 1e-9)),
+    error / max(stay, 1e-9),
+    min(end_s / frame.length_s(count), 1.0),
+    rest_m if resting_s.any() else np.inf,
+    1 - seen_s / max(float(whole.weights_s.sum()), 1e-9),
+    float(shapes.angles_rad[view]),
+    poses[-1].scale_px,
+  )
 
-    Args:
-      word: (N,) symbols.
-    """
-    places = np.arange(len(word))
-    near = (self.near[places, word] * self.seen).sum()
-    return float(self.misfits[places, word].sum() / max(near, 1e-9))
+
+def _nearest(paths: np.ndarray, own: int) -> float:
+  """The mean square distance of one of paths (K, P, 2) from the nearest other."""
+  apart = ((paths - paths[own]) ** 2).sum(axis=-1).mean(axis=-1)
+  return float(np.delete(apart, own).min())
