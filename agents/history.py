@@ -48,10 +48,14 @@ class History:
     self._rows.append(row)
 
   def forget(self, now_s: float, keep_s: float) -> None:
-    """Drops what is older than is kept, once that is as much again."""
+    """Drops what is older than is kept, once that is as much again.
+
+    The last place stays, for the picture of it that is shown again.
+    """
     rows = self._rows
     if rows and now_s - rows[0][0] > 2 * keep_s:
-      self._rows = [row for row in rows if row[0] >= now_s - keep_s]
+      kept = [row for row in rows if row[0] >= now_s - keep_s]
+      self._rows = kept or rows[-1:]
 
   def samples(self, since_s: float) -> lock.Samples:
     """All since a time."""
