@@ -280,7 +280,9 @@ class Hover:
         aligner, self._detector, self._speckled, background,
         self._slack_px, found, separation.greys,
       )  # fmt: skip
-    if not resting and config_lib.lasted(self._since_s, time_s, self._config.separate_s):
+    if not resting and config_lib.lasted(
+      self._since_s, time_s, self._config.separate_s
+    ):
       self._forget()
     return None
 

@@ -33,7 +33,7 @@ class Reader:
     """
     self._frame = frame
     self._after = frame.shapes.after
-    self._numbers = [slots.START, *range(frame.count)]
+    self._numbers = [slots.START, *range(frame.count + 1)]
     self._poses = [slots.Pose(found.home_px, 0.0, found.scale_px)]
     self._view, self.word = self._survive()
     self._smooth()
@@ -96,46 +96,43 @@ class Reader:
     return self._view, state, int(self.word[number])
 
   def _smooth(self) -> None:
-    """Each slot's pose by all that was seen before and after it, but END.
+    """Each slot's pose by all that was seen before and after it.
 
-    END is judged by what came before it, and vouches for nothing.
+    END of levels is told by where it leads: it is judged by what came before
+    it, and vouches for nothing. That of gestures is told by its shape.
     """
-    poses = self._poses[:-1]
+    numbers, poses = self._numbers, self._poses
+    if self._frame.shapes.alphabet.states > 1:
+      numbers, poses = numbers[:-1], poses[:-1]
     seen = [
       self._frame.evidence(number, pose)[self._index(number)]
-      for number, pose in zip(self._numbers, poses, strict=True)
+      for number, pose in zip(numbers, poses, strict=True)
     ]
     found = wander_chain.Evidence(
       np.array([each.square for each in seen]),
       np.array([each.linear for each in seen]),
       np.array([each.rest for each in seen]),
     )
-    pairs = zip(poses[1:], poses[:-1], strict=True)
-    steps = np.array([later.step(before) for later, before in pairs])
-    moves = wander_chain.smooth(found, steps)
+    moves = wander_chain.smooth(found, _steps(poses))
     pairs = zip(poses, moves, strict=True)
-    self._poses = [pose.moved(move) for pose, move in pairs]
-    self._poses.append(self._poses[-1])
+    poses = [pose.moved(move) for pose, move in pairs]
+    self._poses = poses + poses[-1:] * (len(self._poses) - len(poses))
 
   def costs(self, words: np.ndarray) -> np.ndarray:
     """How far words (W, N) are from what was seen, each with its own wander."""
-    numbers = [*self._numbers, self._frame.count]
     seen = [
       self._frame.evidence(number, pose)[self._view]
-      for number, pose in zip(numbers, self._poses, strict=True)
+      for number, pose in zip(self._numbers, self._poses, strict=True)
     ]
-    pairs = zip(self._poses[1:], self._poses[:-1], strict=True)
-    steps = np.array([later.step(before) for later, before in pairs])
-    return self._chain(words, seen, steps)
+    return self._chain(words, seen, _steps(self._poses))
 
   def apart(self, words: np.ndarray) -> np.ndarray:
     """How far words (W, N) are from the one that is read, if all is seen."""
-    numbers = [*self._numbers, self._frame.count]
     ideal = [
       self._frame.ideal(number, self._index(number))[self._view]
-      for number in numbers
+      for number in self._numbers
     ]
-    steps = np.zeros((len(numbers) - 1, wander_chain.SIZE))
+    steps = np.zeros((len(ideal) - 1, wander_chain.SIZE))
     return self._chain(words, ideal, steps)
 
   def _chain(
@@ -154,6 +151,12 @@ class Reader:
   def judged(self) -> reading.Reading:
     """What the word stands on."""
     return reading.judge(self._frame, self.word, self._view, self._poses)
+
+
+def _steps(poses: Sequence[slots.Pose]) -> np.ndarray:
+  """(N - 1, 4) how far each of poses is from the one before."""
+  pairs = zip(poses[1:], poses[:-1], strict=True)
+  return np.array([later.step(before) for later, before in pairs])
 
 
 def _trace(

@@ -174,9 +174,7 @@ class JointReceiver:
         found.append(start)
     return found
 
-  def _begins(
-    self, tracks: Sequence[klt.Track], length_s: float
-  ) -> np.ndarray:
+  def _begins(self, tracks: Sequence[klt.Track], length_s: float) -> np.ndarray:
     """When a START of some length may have begun that was not tried before.
 
     Images may be rare, or not come: what begins between two is found too.

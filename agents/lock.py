@@ -14,6 +14,8 @@ _SAMPLE_S = 0.1
 # it is left out, a few times over.
 _FAR, _ROUNDS = 0.35, 4
 _FEWEST = 5  # Samples of a START.
+# Whoever hovers drifts by no more than this while it dances.
+_DRIFT_MPS = 0.03
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -91,8 +93,12 @@ def fit(
     if scale_px <= 0:
       return None
     path = paths[view]
-    off_px = np.linalg.norm(part.places_px - home_px - scale_px * path, axis=1)
     share = weights_s / weights_s.sum()
+    offs_px = part.places_px - home_px - scale_px * path
+    offs_px -= _drift(part.times_s, offs_px, share, scale_px) * ~path.any(
+      axis=0
+    )
+    off_px = np.linalg.norm(offs_px, axis=1)
     size_px = scale_px * math.sqrt(share @ ((path - share @ path) ** 2).sum(1))
     rms_px = math.sqrt(share @ off_px**2)
     far = (off_px > max(_FAR * size_px, 2 * rms_px)) & (weights_s > 0)
@@ -101,6 +107,19 @@ def fit(
     weights_s[far] = 0.0
   error = rms_px / max(size_px, 1e-9)
   return Lock(begin_s, error, scale_px, home_px, float(during))
+
+
+def _drift(
+  times_s: np.ndarray,  # (T,)
+  offs_px: np.ndarray,  # (T, 2)
+  share: np.ndarray,  # (T,)
+  scale_px: float,
+) -> np.ndarray:
+  """(T, 2) what a steady drift, as of whoever hovers, has of this."""
+  since_s = times_s - share @ times_s
+  most_px_s = _DRIFT_MPS * scale_px
+  rate_px_s = (share * since_s) @ offs_px / max(share @ since_s**2, 1e-9)
+  return since_s[:, None] * np.clip(rate_px_s, -most_px_s, most_px_s)
 
 
 def _least(

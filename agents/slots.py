@@ -117,9 +117,7 @@ class Slots:
       weights_s = weights_s * self._is_dancer(times_s, places_m)
     return Part(times_s, places_m, weights_s)
 
-  def _is_dancer(
-    self, times_s: np.ndarray, places_m: np.ndarray
-  ) -> np.ndarray:
+  def _is_dancer(self, times_s: np.ndarray, places_m: np.ndarray) -> np.ndarray:
     """(T,) whether the dancer can be there; else it is something else.
 
     A slot of which much is something else tells nothing. What comes for END is
@@ -146,9 +144,7 @@ class Slots:
     part = self.part(number, pose)
     return self._evidence(number, part.times_s, part.places_m, part.weights_s)
 
-  def ideal(
-    self, number: int, index: tuple[int, ...]
-  ) -> wander_chain.Evidence:
+  def ideal(self, number: int, index: tuple[int, ...]) -> wander_chain.Evidence:
     """The same if all is seen, and flown as one of `paths` by its index."""
     length_s = self.length_s(number)
     images = max(round(length_s / _IDEAL_S), 2)
