@@ -78,6 +78,6 @@ def judge(
 
 
 def _nearest(paths: np.ndarray, own: int) -> float:
-  """The mean square distance of one of paths (K, P, 2) from the nearest other."""
+  """The mean square distance of one of (K, P, 2) paths from the nearest."""
   apart = ((paths - paths[own]) ** 2).sum(axis=-1).mean(axis=-1)
   return float(np.delete(apart, own).min())
