@@ -8,9 +8,10 @@ from waggle_tasks.agents import group, receiver, receivers
 from waggle_tasks.experiments.episodes import evaluator, rollout
 from waggle_tasks.experiments.record import verdicts
 from waggle_tasks.protocol import decoys, languages, payload
-from waggle_tasks.tasks import drift
+from waggle_tasks.tasks import drift, surroundings
 
 BITS = '01101000' * 2
+HOVER = drift.Drift(performer_hover='mocap', observer_hover='mocap')
 FRAMES = [name for name in decoys.DECOYS if not decoys.figures(name, np.random)]
 
 
@@ -84,13 +85,27 @@ def test_a_frame_that_was_hidden_is_read_in_the_next_round() -> None:
     {'sensor': sensor.Sensor(dropped_share=0.3)},
     {'sensor': sensor.Sensor(blackout_s=3.2, blackout_length_s=0.6)},
     {'drift': drift.Drift(performer_hover='mocap'), 'seed': 1},
+    {'drift': HOVER, 'seed': 858278},
     {'dynamics': 'rotors'},
+    {'surroundings': surroundings.Surroundings(0, 5.0), 'repeat': 2},
   ],
-  ids=['dropped', 'a symbol hidden', 'hover', 'rotors'],
+  ids=['dropped', 'a symbol hidden', 'hover', 'all hover', 'rotors', 'board'],
 )
 def test_swift_bears_it(spoilt: dict) -> None:
   outcome, _ = fly(language='swift', payload='011010', **spoilt)
   assert outcome.decoded == '011010'
+
+
+def test_brisk_is_read_of_a_dancer_that_hovers() -> None:
+  hover = drift.Drift(performer_hover='mocap')
+  outcome, _ = fly(language='brisk', payload='011010', drift=hover, seed=1)
+  assert outcome.decoded == '011010'
+
+
+def test_who_sees_nothing_at_first_learns_the_scene_later() -> None:
+  dark = sensor.Sensor(blackout_length_s=3.0)
+  outcome, _ = fly(language='swift', sensor=dark, repeat=2)
+  assert outcome.decoded == outcome.expected
 
 
 @pytest.mark.parametrize(
