@@ -101,11 +101,11 @@ class Reader:
     END of levels is told by where it leads: it is judged by what came before
     it, and vouches for nothing. That of gestures is told by its shape.
     """
-    numbers, poses = self._numbers, self._poses
-    if self._frame.shapes.alphabet.states > 1:
+    frame, numbers, poses = self._frame, self._numbers, self._poses
+    if frame.shapes.alphabet.states > 1:
       numbers, poses = numbers[:-1], poses[:-1]
     seen = [
-      self._frame.evidence(number, pose)[self._index(number)]
+      frame.evidence(number, pose)[self._index(number)]
       for number, pose in zip(numbers, poses, strict=True)
     ]
     found = wander_chain.Evidence(
@@ -117,23 +117,21 @@ class Reader:
     pairs = zip(poses, moves, strict=True)
     poses = [pose.moved(move) for pose, move in pairs]
     self._poses = poses + poses[-1:] * (len(self._poses) - len(poses))
+    named = zip(self._numbers, self._poses, strict=True)
+    self._seen = [frame.evidence(*each)[self._view] for each in named]
+    self._ideal = [
+      frame.ideal(number, self._index(number))[self._view]
+      for number in self._numbers
+    ]
 
   def costs(self, words: np.ndarray) -> np.ndarray:
     """How far words (W, N) are from what was seen, each with its own wander."""
-    seen = [
-      self._frame.evidence(number, pose)[self._view]
-      for number, pose in zip(self._numbers, self._poses, strict=True)
-    ]
-    return self._chain(words, seen, _steps(self._poses))
+    return self._chain(words, self._seen, _steps(self._poses))
 
   def apart(self, words: np.ndarray) -> np.ndarray:
     """How far words (W, N) are from the one that is read, if all is seen."""
-    ideal = [
-      self._frame.ideal(number, self._index(number))[self._view]
-      for number in self._numbers
-    ]
-    steps = np.zeros((len(ideal) - 1, wander_chain.SIZE))
-    return self._chain(words, ideal, steps)
+    steps = np.zeros((len(self._numbers) - 1, wander_chain.SIZE))
+    return self._chain(words, self._ideal, steps)
 
   def _chain(
     self, words: np.ndarray, found: _Evidences, steps: np.ndarray

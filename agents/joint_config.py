@@ -19,8 +19,8 @@ class Reading(group.Group):
     max_misfit: How far a symbol may be from what was seen, as a share of the
       squared distance to the next one: 0.25 is half-way.
     max_end: The same of END and the rest after it, beside a rest without END.
-    max_rest_m: How far from the hover point the dancer may rest after END, by
-      what was seen before it.
+    max_rest: How far from the hover point the dancer may rest after END, by
+      what was seen before it, as a share of how far the nearest level is.
     max_astray: What share of the track may be where no symbol is flown.
     max_angle_deg: Largest viewing angle to either side...
     angles: ...and how many, from one side to the other.
@@ -33,7 +33,7 @@ class Reading(group.Group):
   min_clear: float = group.number(0.4, 0, 1)
   max_misfit: float = group.number(0.2, 0, 1)
   max_end: float = group.number(0.25, 0, 1)
-  max_rest_m: float = group.number(0.016, 0, 1)
+  max_rest: float = group.number(0.45, 0, 1)
   max_astray: float = group.number(0.2, 0, 1)
   max_angle_deg: float = group.number(85.0, 0, 90)
   angles: int = group.number(35, 1, 181)

@@ -252,10 +252,12 @@ class JointReceiver:
       return _Read(
         f'what came for END was none: error {found.end:.2f} > {limits.max_end}'
       )
-    # Gestures all end at the hover point: only END tells their end.
-    if self._alphabet.states > 1 and found.rest_m > limits.max_rest_m:
+    if not found.rest_seen:
+      return _Read('the rest after END was not seen')
+    if found.rest > limits.max_rest:
       return _Read(
-        f'after END it rested {found.rest_m * 1e3:.0f} mm from where it hovers'
+        f'after END it rested at {found.rest:.0%} of the way to the next level'
+        f' > {limits.max_rest:.0%}'
       )
     if found.astray > limits.max_astray:
       return _Read(

@@ -20,7 +20,10 @@ class Reading:
       of how far a dancer would be that stayed where it was, or one level
       beside.
     end_seen: What share of their time was seen.
-    rest_m: How far from its hover point the dancer then rested.
+    rest: How far from its hover point the dancer then rested, as a share of how
+      far the nearest level is; 0 for gestures, which all end there, so that
+      END alone tells their end.
+    rest_seen: Whether that rest was seen.
     astray: What share of the track was where no symbol is flown.
     angle_rad: Where it was seen from.
     scale_px: Pixels of a metre at the dancer.
@@ -29,7 +32,8 @@ class Reading:
   misfit: float
   end: float
   end_seen: float
-  rest_m: float
+  rest: float
+  rest_seen: bool
   astray: float
   angle_rad: float
   scale_px: float
@@ -58,7 +62,9 @@ def judge(
   end_s = float(ended.weights_s.sum())
   resting_s = ended.weights_s * (ended.times_s >= shapes.end_s)
   middle_m = resting_s @ ended.places_m / max(resting_s.sum(), 1e-9)
-  rest_m = float(np.hypot(*middle_m * shapes.tell))
+  ways_m = shapes.ends[view][:, 0] - shapes.ends[view][:, -1]
+  level_m = float(np.hypot(*ways_m.T).min())
+  rest = float(np.hypot(*middle_m * shapes.tell)) / level_m if level_m else 0.0
   path = shapes.ends[view, states[-1]]
   stay = float(((path - path[:1]) ** 2).sum(axis=-1).mean()) * shapes.end_s
   stay += float(((path[-1] - path[0]) ** 2).sum()) * frame.after_s
@@ -70,7 +76,8 @@ def judge(
     float(misfit / max(near, 1e-9)),
     error / max(stay, 1e-9),
     min(end_s / frame.length_s(count), 1.0),
-    rest_m if resting_s.any() else np.inf,
+    rest,
+    bool(resting_s.any()),
     1 - seen_s / max(float(whole.weights_s.sum()), 1e-9),
     float(shapes.angles_rad[view]),
     poses[-1].scale_px,
