@@ -17,6 +17,7 @@ from waggle_tasks.protocol import agreement as agreement_lib
 
 Spoiler = Callable[[Stream], Stream]
 _SHORTEST_S, _LONGEST_S = 0.2, 40.0
+_LONGEST_SLOTS = 4  # The same in a language without long pauses.
 _MOST_LOSSES = 3
 _LASTING_SHARE = 0.3  # Of all exposures; receivers are slow in some.
 _WHOLE = 250  # Of light, in a table of whole numbers.
@@ -262,13 +263,23 @@ def _loss(
   rng: np.random.RandomState, agreed: agreement_lib.Agreement, length_s: float
 ) -> Loss:
   kind = str(rng.choice([*LOSSES]))
+  pause_s, slot_s, longest_s = _pace(agreed)
   if rng.rand() < 0.5:
-    long = np.exp(rng.uniform(np.log(_SHORTEST_S), np.log(_LONGEST_S)))
+    long = np.exp(rng.uniform(np.log(_SHORTEST_S), np.log(longest_s)))
     return Loss(kind, float(rng.uniform(0, length_s)), float(long))
-  pause_s = agreed.pauses.pause_s
-  slot_s = agreed.codebook.gestures[0].duration_s + pause_s
   slots = rng.randint(0, int(length_s / slot_s) + 1)
   rest_s = agreed.pauses.initial_hover_s + slots * slot_s - pause_s
   begin_s = rest_s + rng.uniform(-0.2, 1.0) * pause_s
   long = rng.randint(1, 4) * slot_s + rng.uniform(-1.2, 0.5) * pause_s
   return Loss(kind, float(begin_s), float(max(long, _SHORTEST_S)))
+
+
+def _pace(agreed: agreement_lib.Agreement) -> tuple[float, float, float]:
+  """How long a pause, a motion with its pause, and the longest loss are, s."""
+  if agreed.language is None:
+    pause_s = agreed.pauses.pause_s
+    slot_s = agreed.codebook.gestures[0].duration_s + pause_s
+    return pause_s, slot_s, _LONGEST_S
+  alphabet = agreed.language.alphabet
+  pause_s = max(alphabet.rest_s, alphabet.slot_s / 4)
+  return pause_s, alphabet.slot_s, _LONGEST_SLOTS * alphabet.slot_s
