@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 import itertools
+import re
 
 from waggle_tasks.agents import observer_agent, receiver
 from waggle_tasks.experiments.pages import markup, plot
@@ -122,7 +123,7 @@ def _parts(sent: Sequence[moves.Sent]) -> list[moves.Sent]:
 def _part(part: moves.Sent, across: plot.Scale) -> markup.Markup:
   """A packet or a round; where there is little room, by numbers alone."""
   begin, end = across(part.begin_s), across(part.end_s)
-  short = '/'.join(word for word in part.part.split() if word.isdecimal())
+  short = re.sub(r'\w+ (\d+) of (\d+)', r'\1/\2', part.part)
   label = part.part if len(part.part) * _SMALL_PX + 2 <= end - begin else short
   hint = f'{part.part}, {part.begin_s:.2f} to {part.end_s:.2f} s'
   return block(begin, end, label, _BIT, hint)

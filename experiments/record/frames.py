@@ -58,6 +58,15 @@ class Frame:
     return ' '.join(each.mark.label for each in self.slots[1:-1])
 
 
+def opens(event: episode.Event) -> bool:
+  """Whether what follows an event is read as a whole."""
+  return (
+    isinstance(event, receiver.Event)
+    and event.symbol is Symbol.START
+    and event.recognition is None
+  )
+
+
 def is_whole(event: episode.Event) -> bool:
   """Whether an event tells of a frame that was read as a whole, or refused."""
   if not isinstance(event, receiver.Event):

@@ -154,7 +154,9 @@ class Strip:
         label = _DEEDS.get(event.deed, '!')
     width = pen.chip_width(label, size)
     left = max(column - width, free)
-    if left <= column and left + width <= self._plan.strip.width:
+    # Until its frame is read, what looked like START may be none.
+    named = not frames.opens(event)
+    if named and left <= column and left + width <= self._plan.strip.width:
       return pen.chip(self._canvas, label, left, middle, size, colour)
     bar = layout.Rect(
       max(column, free), middle - plan.px(8), plan.px(3), plan.px(16)
