@@ -25,8 +25,14 @@ def are_told(run: archive.Run, name: str) -> bool:
   )
 
 
-def draw(run: archive.Run, name: str) -> markup.Markup:
-  """What an observer read of each frame, and what it refused."""
+def draw(run: archive.Run, name: str, limits: Sequence[str]) -> markup.Markup:
+  """What an observer read of each frame, and what it refused.
+
+  Args:
+    run: The run.
+    name: The observer.
+    limits: What its receiver asks of a frame; empty if it does not tell.
+  """
   events = run.events[name]
   found = frames.read(events, run.config.agreement)
   begun = sum(
@@ -35,15 +41,23 @@ def draw(run: archive.Run, name: str) -> markup.Markup:
   )
   if not begun and not found:
     return tag('p', 'It saw no START.', class_='faint')
+  asked = None
+  if limits:
+    asked = tag(
+      'details', tag('summary', 'What a frame is read by'),
+      tag('ul', *(tag('li', limit) for limit in limits)), class_='faint',
+    )  # fmt: skip
   told = f'It took {begun} motion{"" if begun == 1 else "s"} for START.'
   if not found:
-    return tag('p', f'{told} No frame was over.', class_='faint')
+    return tag(
+      'div', tag('p', f'{told} No frame was over.', class_='faint'), asked
+    )
   rows = [_row(each, run.sent) for each in found]
   about = (
     f'{told} Clear is how much nearer what was read is than any other word, as'
     ' a share of how far they are apart.'
   )
-  return tag('div', markup.table(_HEADER, rows, about), class_='frames')
+  return tag('div', markup.table(_HEADER, rows, about), asked)
 
 
 def _row(

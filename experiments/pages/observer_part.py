@@ -40,7 +40,10 @@ def _read(
 ) -> list[markup.Markup]:
   """Its frames, if it reads them as a whole; else its motions."""
   if frames_part.are_told(run, name):
-    return [tag('h3', f'Frames of {name}'), frames_part.draw(run, name)]
+    return [
+      tag('h3', f'Frames of {name}'),
+      frames_part.draw(run, name, told.frames),
+    ]
   events = timelines.motions(run.events[name])
   drawn = tag('p', 'It saw no motion.', class_='faint')
   if events:
