@@ -385,7 +385,7 @@ def test_a_grid_takes_names_of_languages_alone(tmp_path: pathlib.Path) -> None:
       '{"alphabet": {"count": 16, "reach_m": 0.05}}',
       '`language.alphabet` must',
     ),
-    ('', r"`language` must be one of \['paper', 'brisk', 'swift'\]: got ''"),
+    ('', r"`language` must be one of \['paper', 'brisk', 'gentle', 'swift'\]: got ''"),
     ('swfit', "got 'swfit'. Did you mean swift"),
   ],
 )
@@ -400,7 +400,9 @@ def test_the_command_shows_every_language_as_the_documents_have_it(
   child = waggle('languages', cwd=tmp_path, **no_gl)
   assert child.returncode == 0, child.stderr
   head, _, *lines = child.stdout.split('\n\n')[0].splitlines()
-  assert [line.split()[0] for line in lines] == ['paper', 'brisk', 'swift']
+  assert [line.split()[0] for line in lines] == [
+    'paper', 'brisk', 'gentle', 'swift',
+  ]
   names = re.split(r'\s{2,}', head)
   rows = [dict(zip(names, re.split(r'\s{2,}', x), strict=True)) for x in lines]
   for row in rows:
