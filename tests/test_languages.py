@@ -387,7 +387,8 @@ def test_a_grid_takes_names_of_languages_alone(tmp_path: pathlib.Path) -> None:
     ),
     (
       '',
-      r"`language` must be one of \['paper', 'brisk', 'gentle', 'swift'\]: got ''",
+      r"`language` must be one of \['paper', 'brisk', 'gentle', 'swift'\]:"
+      r" got ''",
     ),
     ('swfit', "got 'swfit'. Did you mean swift"),
   ],
