@@ -29,6 +29,7 @@ from waggle_tasks.experiments.record import (
   archive,
   episode,
   folders,
+  frames,
   nulls,
   provenance,
   reach,
@@ -77,6 +78,9 @@ def main(argv: Sequence[str]) -> int:
     )  # fmt: skip
   run_page.leave(folder)
   print(report(scene, verdict))
+  for name, events in rollout.events.items():
+    for line in frames.lines(events, scene.agreement):
+      print(f'{name}: {line}')
   print(f'Run folder: {folder}, report: {folder / document.NAME}')
   return 0 if verdict.passed else 1
 

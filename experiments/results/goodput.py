@@ -119,15 +119,15 @@ def tally(rows: Sequence[Row]) -> Tally:
     if each is not None and each.expected and each.decoded
   ]  # fmt: skip
   return Tally(
-    bits, seconds, len(fates),
-    *map(fates.count, ('delivered', 'wrong', 'unseen')),
-    read_bits=sum(max(len(said), len(read)) for said, read in pairs),
-    right_bits=sum(
-      a == b
-      for said, read in pairs
-      for a, b in zip(said, read, strict=False)
-    ),
-  )  # fmt: skip
+    bits,
+    seconds,
+    len(fates),
+    fates.count('delivered'),
+    fates.count('wrong'),
+    fates.count('unseen'),
+    sum(max(len(said), len(read)) for said, read in pairs),
+    sum(a == b for pair in pairs for a, b in zip(*pair, strict=False)),
+  )
 
 
 def whole(rows: Sequence[Row]) -> list[Row]:

@@ -133,11 +133,19 @@ def _gestures(
 
 LANGUAGES = {
   'brisk': _gestures(
-    0.04, 0.15, 0.08, 0.08, lambda *way_m: levels_lib.least_s(max(way_m))
+    0.04,
+    0.15,
+    0.08,
+    0.08,
+    lambda right_m, up_m: levels_lib.least_s(max(right_m, up_m)),
   ),
   # What four rotors fly: they lean before they go sideways, and settle after.
   'gentle': _gestures(
-    0.15, 0.3, 0.2, 0.4, lambda *way_m: limits.least_s(*way_m, 'rotors')
+    0.15,
+    0.3,
+    0.2,
+    0.4,
+    lambda right_m, up_m: limits.least_s(right_m, up_m, 'rotors'),
   ),
   'swift': Language(levels_lib.quickest(8, 0.14), coding_lib.Coding(parity=2)),
 }
