@@ -120,3 +120,16 @@ def test_a_text_report_tells_each_frame() -> None:
   said = reader.report([work])
   assert 'END NULL' in said
   assert 's: 0 2 7 6, payload 000010, clear 0.90, from 10 degrees' in said
+
+
+def test_few_frames_are_told_one_by_one_and_many_together() -> None:
+  scene = scenario.Scenario(language='swift', bits=DATA, repeat=3)
+  agreed, events = read(scene, 0, 1)
+  first, second = frames.lines(events, agreed)
+  assert ', packet 1 of 2, clear 0.90, ' in first
+  assert ', packet 2 of 2, clear 0.90, ' in second
+  agreed, events = read(scene, 0, 1, 2, 3)
+  (line,) = frames.lines(events, agreed)
+  assert line.startswith('4 frames to ')
+  assert line.endswith(' s, clear 0.90 and more')
+  assert frames.lines([], agreed) == []

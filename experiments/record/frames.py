@@ -9,6 +9,8 @@ from waggle_tasks.protocol import agreement as agreement_lib
 from waggle_tasks.protocol import packets
 from waggle_tasks.protocol.symbols import Symbol
 
+_TOLD = 3  # Frames that are told one by one.
+
 
 @dataclasses.dataclass(frozen=True)
 class Frame:
@@ -89,6 +91,23 @@ def read(
     for event in events
     if isinstance(event, receiver.Event) and is_whole(event)
   )
+
+
+def lines(
+  events: Iterable[episode.Event], agreement: agreement_lib.Agreement
+) -> list[str]:
+  """What an observer read of frames in few lines; none if by motions.
+
+  Args:
+    events: What it saw and did.
+    agreement: What both sides know.
+  """
+  found = [each for each in read(events, agreement) if each.slots]
+  if len(found) <= _TOLD:
+    return [f'{each.time_s:.2f} s: {each.words}' for each in found]
+  clear = [each.clear for each in found if each.clear is not None]
+  least = f', clear {min(clear):.2f} and more' if clear else ''
+  return [f'{len(found)} frames to {found[-1].time_s:.2f} s{least}']
 
 
 def _frame(event: receiver.Event, agreement: agreement_lib.Agreement) -> Frame:
