@@ -54,7 +54,7 @@ def write(folder: pathlib.Path) -> pathlib.Path:
     ArchiveError: if it is no run folder, or damaged.
     TraceError: the same, of its traces; FlownError, of flights.
   """
-  wrong = AttributeError, KeyError, TypeError, receivers.ReceiverError
+  wrong = AttributeError, LookupError, TypeError, receivers.ReceiverError
   try:
     whole = draw(archive.load(folder), videos(folder))
   except wrong as error:
@@ -115,13 +115,11 @@ def _said(run: archive.Run) -> str:
 
 def _facts(run: archive.Run) -> dict[str, Any]:
   """What the script says about a moment."""
+  agreed = run.config.agreement
   readings = {
     name: [
-      [0.0, story.Reading().status],
-      *(
-        [t, reading.status]
-        for t, reading in story.readings(events, run.config.agreement)
-      ),
+      [0.0, story.Reading(agreed).status],
+      *([t, reading.status] for t, reading in story.readings(events, agreed)),
     ]
     for name, events in run.events.items()
   }

@@ -204,8 +204,9 @@ def _states(
   run: archive.Run, events: Sequence[episode.Event], across: plot.Scale
 ) -> list[markup.Markup]:
   """What the frame parser waited for, from event to event."""
-  changes, end_s = [(0.0, story.Reading())], run.end_s
-  for time_s, reading in story.readings(events, run.config.agreement):
+  agreed, end_s = run.config.agreement, run.end_s
+  changes = [(0.0, story.Reading(agreed))]
+  for time_s, reading in story.readings(events, agreed):
     if reading.deed:
       end_s = min(end_s, time_s)  # Navigating, it parses no more.
     elif reading.waits_for != changes[-1][1].waits_for:
@@ -216,8 +217,8 @@ def _states(
     label = reading.waits_for
     colour = _WAITING.get(label, _BIT)
     hint = f'waits for {label}, {begin_s:.2f} to {stop_s:.2f} s'
-    if reading.packets:
-      hint += f'; {reading.packets}'
+    if reading.parts:
+      hint += f'; {reading.parts}'
     out.append(block(across(begin_s), across(stop_s), label, colour, hint))
   return out
 

@@ -53,11 +53,11 @@ class Reading:
     """One line about it."""
     if self.deed:
       return f'{self.deed} {self.message}'
-    had = f'{self.packets}, ' if self.packets else ''
+    had = f'{self.parts}, ' if self.parts else ''
     return f'{had}next: {self.waits_for}'
 
   @property
-  def packets(self) -> str:
+  def parts(self) -> str:
     """Which packets of a message it has; empty before the first one."""
     if self.collected is None or self.collected.whole is None:
       return ''
@@ -92,8 +92,8 @@ class Reading:
     begun = event.rejection is None or event.state is frame.State.SEPARATOR
     if event.symbol is not Symbol.NULL and begun:
       symbols = (*symbols, marks.of(event.symbol))
-    bits = sum(mark.symbol in BITS for mark in symbols)
-    waits_for = self._waits_for(event.state, f'bit {bits + 1}')
+    count = sum(mark.symbol in BITS for mark in symbols)
+    waits_for = self._waits_for(event.state, f'bit {count + 1}')
     if event.symbol is Symbol.START and event.recognition is None and begun:
       waits_for = _WAITS_FOR[frame.State.END]  # All is read with it.
     message = event.message.bits if event.message else self.message

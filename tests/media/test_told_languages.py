@@ -53,6 +53,7 @@ def test_a_page_tells_each_level_that_was_sent_and_read(page: str) -> None:
     assert f'read level {level}, ' in page, number
   assert '"level 7"' in page  # For the line that follows the cursor.
   assert 'LEVEL' not in page
+  assert 'first null' not in page
 
 
 def test_a_page_has_the_word_and_how_clear_it_is(
