@@ -57,6 +57,7 @@ class Description:
     quality: How good a track is, 0 to 1.
     recognition: What scores of a motion are held against.
     templates: Makes what motions are compared with.
+    frames: What a frame that is read as a whole must keep, a line each.
   """
 
   null: Null | None = None
@@ -68,6 +69,7 @@ class Description:
   quality: Measure = Measure('quality', '0 to 1')
   recognition: config_lib.Recognition | None = None
   templates: Callable[[], views.Templates] | None = None
+  frames: tuple[str, ...] = ()
 
 
 def of(config: config_lib.Config, width_px: float | None) -> Description:

@@ -29,17 +29,16 @@ from waggle_tasks.experiments.record import (
   archive,
   episode,
   folders,
+  frames,
   nulls,
   provenance,
   reach,
   source_files,
+  told,
   verdicts,
   writer,
 )
 from waggle_tasks.experiments.studies import job_progress
-from waggle_tasks.protocol import packets
-
-_BITS = 16  # That are shown of many.
 
 scenario_flags.define()
 recording_flags.define()
@@ -79,6 +78,9 @@ def main(argv: Sequence[str]) -> int:
     )  # fmt: skip
   run_page.leave(folder)
   print(report(scene, verdict))
+  for name, events in rollout.events.items():
+    for line in frames.lines(events, scene.agreement):
+      print(f'{name}: {line}')
   print(f'Run folder: {folder}, report: {folder / document.NAME}')
   return 0 if verdict.passed else 1
 
@@ -135,8 +137,8 @@ def report(scene: scenario.Scenario, verdict: verdicts.Verdict) -> str:
   rows = [
     (
       each.observer,
-      _short(each.expected or 'nothing'),
-      _short(each.decoded or '-'),
+      told.short(each.expected or 'nothing'),
+      told.short(each.decoded or '-'),
       table.number(each.end_s),
       table.number(each.final_null_s),
       table.number(each.start_s),
@@ -159,26 +161,12 @@ def report(scene: scenario.Scenario, verdict: verdicts.Verdict) -> str:
   expecting = sum(each.expected is not None for each in verdict.outcomes)
   lines.append(
     f'Group {"passed" if verdict.passed else "FAILED"}: {verdict.correct} of'
-    f' {expecting} observers decoded {_told(scene)}.'
+    f' {expecting} observers decoded {told.message(scene.payload, scene.bits)}.'
     if expecting
     else f'Group {"passed" if verdict.passed else "FAILED"}: nothing was to be'
     ' decoded.'
   )
   return '\n'.join(lines)
-
-
-def _short(bits: str) -> str:
-  """Bits for a cell of the table, which shows the first of many."""
-  return bits if len(bits) <= _BITS else f'{bits[:_BITS]}.. {len(bits)} bits'
-
-
-def _told(scene: scenario.Scenario) -> str:
-  """What was sent, in a line."""
-  if not scene.bits:
-    return scene.payload
-  text = packets.bits_text(scene.bits)
-  said = '' if text is None or not text.isprintable() else f': {text!r}'
-  return f'{_short(scene.bits)}{said}'
 
 
 def _estimated(scene: scenario.Scenario, cell: str) -> tuple[str, ...]:

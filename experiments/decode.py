@@ -24,7 +24,13 @@ from waggle_tasks import errors
 from waggle_tasks.agents import receivers
 from waggle_tasks.experiments import launch
 from waggle_tasks.experiments.flags import config_flag, receiver_flag
-from waggle_tasks.experiments.record import archive, capture, folders, reader
+from waggle_tasks.experiments.record import (
+  archive,
+  capture,
+  folders,
+  reader,
+  told,
+)
 from waggle_tasks.experiments.video import annotated, picture_folder, recordings
 from waggle_tasks.protocol import agreement as agreement_lib
 from waggle_tasks.protocol import camera, checks
@@ -34,7 +40,8 @@ ARGUMENTS = 'FOLDER|VIDEO'
 _RECEIVER = flags.DEFINE_multi_string('receiver', None, '')
 # absl adds a sentence to the help of a flag that may be given again.
 flags.FLAGS['receiver'].help = (
-  "How images are read; may be given again. Unset, the run's own, or klt."
+  "How images are read; may be given again. Unset, the run's own; of a video"
+  f" klt, or {receiver_flag.JOINT} for another language than the paper's."
   f' {receiver_flag.RULE}'
 )
 _ROI = flags.DEFINE_string(
@@ -102,7 +109,7 @@ def _folder(folder: pathlib.Path) -> int:
     print(f'{path.stem}: {images} images to {last_s:.2f} s')
     print(reader.report(readers))
     for each in readers:
-      said = f'message {each.message}' if each.message else 'no message'
+      said = _said(each)
       if each.name == own:
         other = reader.differences(each, folder, path.stem)
         status = status or int(bool(other))
@@ -114,7 +121,9 @@ def _folder(folder: pathlib.Path) -> int:
 
 def _video(path: pathlib.Path) -> int:
   """Reads a recording."""
-  names = list(dict.fromkeys(_RECEIVER.value or ['klt']))
+  spoken = _language()
+  usual = 'klt' if spoken.language is None else receiver_flag.JOINT
+  names = list(dict.fromkeys(_RECEIVER.value or [usual]))
   # Their counts were checked.
   roi: Any = _numbers(_ROI, 4, int)
   anchor: Any = _numbers(_ANCHOR, 2, float)
@@ -125,7 +134,7 @@ def _video(path: pathlib.Path) -> int:
     recording = stack.enter_context(recordings.Recording(path, _FPS.value))
     focal_px = _focal_px(recording.height)
     seen = camera.Camera(recording.width, recording.height, focal_px)
-    agreed = dataclasses.replace(_language(), camera=seen)
+    agreed = dataclasses.replace(spoken, camera=seen)
     readers = [reader.Reader(name, agreed) for name in names]
     film = None
     if _ANNOTATE.value is not None:
@@ -152,11 +161,19 @@ def _video(path: pathlib.Path) -> int:
   if gap_s > min(filter(None, known), default=math.inf) + 1e-6:
     print(f'Pictures are missing: {gap_s:.2f} s lie between two of them.')
   for each in readers:
-    said = f'message {each.message}' if each.message else 'no message'
-    print(f'{each.name}: {said}')
+    print(f'{each.name}: {_said(each)}')
   if film and film.problem:
     raise DecodeError(film.problem)  # Last: what was read is not lost.
   return 0 if all(each.message for each in readers) else 1
+
+
+def _said(work: reader.Reader) -> str:
+  """What a reader made of all images."""
+  if work.message is None:
+    return 'no message'
+  if work.agreement.packets is None:
+    return f'message {work.message}'
+  return f'message {told.in_full(work.message, work.message)}'
 
 
 def _language() -> agreement_lib.Agreement:

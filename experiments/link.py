@@ -50,6 +50,11 @@ _BROADCASTS = flags.DEFINE_integer(
   'broadcasts', 5, 'Messages of each scheme in each condition at each place.'
 )
 _OBSERVERS = flags.DEFINE_integer('observers', 1, 'Observers of a broadcast.')
+_BITS = flags.DEFINE_string(
+  'bits', '', 'What every message says in place of six random bits: characters'
+  ' of 0 and 1, or random:N for N bits that each message draws; in any language'
+  ' but the paper\'s.',
+)  # fmt: skip
 _AIRTIME = flags.DEFINE_float(
   'airtime_s', None, 'Time that all schemes are given to be compared, s;'
   f' unset, that of {link_tables.ROUNDS} messages of the paper.',
@@ -77,6 +82,7 @@ def main(argv: Sequence[str]) -> int:
     _numbers('bearings', _BEARINGS.value),
     _BROADCASTS.value,
     _OBSERVERS.value,
+    _BITS.value,
   )
   airtime_s = _AIRTIME.value
   if airtime_s is not None and not 0 < airtime_s < float('inf'):

@@ -56,6 +56,11 @@ MEASURED = {
     loops.Loop(3, 2500, 9.0, 10.0, 9.5), loops.Loop(3, 2500, 7.0, 8.0, 7.5),
     loops.Loop(3, 2500, 19.0, 20.0, 9.5),
   ],
+  'languages': [
+    loops.Loop(3, 2500 // (k + 1), 9.0, 10.0, 9.5)
+    for _ in range(2)
+    for k in range(len(sections.LANGUAGES))
+  ],
   'dynamics': pilots.Flying(
     {
       'ideal': [loops.Loop(3, 2500, 9.0, 10.0, 9.5)],
@@ -81,6 +86,12 @@ def test_ratios_are_medians_of_what_was_measured_side_by_side() -> None:
       'our full render / incremental camera': 20.0,
       'klt receiver / view_bank': 2.0,
       'simulated time / time on one core': 10.0,
+      **{
+        f'speed of a broadcast, {name} / paper': pytest.approx(
+          1 / (k + 2), abs=1e-3
+        )
+        for k, name in enumerate(sections.LANGUAGES[1:])
+      },
       'simulated time / time on one core, rotors': 8.0,
       'share of a broadcast that rotors add': 0.06,
       'cost of a receiver and frame, 16 observers / 2': 1.0,

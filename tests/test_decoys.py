@@ -10,7 +10,7 @@ import pytest
 from waggle_tasks import registry, scenario, suites
 from waggle_tasks.entities import performer
 from waggle_tasks.experiments.episodes import evaluator, rollout
-from waggle_tasks.experiments.record import story
+from waggle_tasks.experiments.record import moves
 from waggle_tasks.protocol import (
   agreement,
   clock,
@@ -228,7 +228,7 @@ def test_a_suite_may_hold_decoys() -> None:
 
 def test_the_timeline_shows_a_figure_as_no_symbol() -> None:
   scene = scenario.Scenario(control='circles')
-  sent = story.sent(scene.performance, scene.episode_s)
+  sent = moves.sent(scene.performance, scene.agreement, scene.episode_s)
   assert {each.symbol for each in sent} == {Symbol.UNKNOWN}
   assert len(sent) == 7
 

@@ -39,7 +39,10 @@ def test_a_name_changes_the_code_and_nothing_else(
 @pytest.mark.parametrize(
   ('name', 'said'),
   [
-    ('swft', "must be one of .*'paper', 'brisk', 'swift'.* mean swift"),
+    (
+      'swft',
+      "must be one of .*'paper', 'brisk', 'gentle', 'swift'.* mean swift",
+    ),
     ('swift:', 'must be NAME or NAME:check'),
     ('swift:parity', 'must be NAME or NAME:check'),
     ('swift:parity=', 'must be NAME or NAME:check'),

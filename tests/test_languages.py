@@ -385,7 +385,11 @@ def test_a_grid_takes_names_of_languages_alone(tmp_path: pathlib.Path) -> None:
       '{"alphabet": {"count": 16, "reach_m": 0.05}}',
       '`language.alphabet` must',
     ),
-    ('', r"`language` must be one of \['paper', 'brisk', 'swift'\]: got ''"),
+    (
+      '',
+      r"`language` must be one of \['paper', 'brisk', 'gentle', 'swift'\]:"
+      r" got ''",
+    ),
     ('swfit', "got 'swfit'. Did you mean swift"),
   ],
 )
@@ -400,7 +404,12 @@ def test_the_command_shows_every_language_as_the_documents_have_it(
   child = waggle('languages', cwd=tmp_path, **no_gl)
   assert child.returncode == 0, child.stderr
   head, _, *lines = child.stdout.split('\n\n')[0].splitlines()
-  assert [line.split()[0] for line in lines] == ['paper', 'brisk', 'swift']
+  assert [line.split()[0] for line in lines] == [
+    'paper',
+    'brisk',
+    'gentle',
+    'swift',
+  ]
   names = re.split(r'\s{2,}', head)
   rows = [dict(zip(names, re.split(r'\s{2,}', x), strict=True)) for x in lines]
   for row in rows:
@@ -421,7 +430,7 @@ def test_the_command_shows_every_language_as_the_documents_have_it(
     assert float(row['m/s']) == pytest.approx(max(speeds), abs=0.006)
     apart_m = sights.nearest(language.alphabet).distance_m
     assert float(row['apart mm']) == pytest.approx(1000 * apart_m, abs=0.06)
-  assert [row['rotors'] for row in rows] == ['yes', 'no', 'yes']
+  assert [row['rotors'] for row in rows] == ['yes', 'no', 'yes', 'yes']
   assert 'brisk, rotors: `gesture 0` must accelerate sideways' in child.stdout
   documents = DOCS.read_text(encoding='utf-8')
   assert all(line in documents for line in (head, *lines))

@@ -7,8 +7,15 @@ import re
 import numpy as np
 import pytest
 
-from waggle_tasks import registry
-from waggle_tasks.agents import config, group, receiver, receivers
+from waggle_tasks import registry, scenario
+from waggle_tasks.agents import (
+  config,
+  group,
+  joint_config,
+  joint_description,
+  receiver,
+  receivers,
+)
 from waggle_tasks.protocol import agreement, camera, gestures
 
 AGREED = agreement.Agreement()
@@ -197,3 +204,17 @@ def test_parts_that_do_not_go_together_are_refused(
 ) -> None:
   with pytest.raises(receivers.ReceiverError, match=error):
     receiver.KltReceiver(config=config.Config(**parts))
+
+
+def test_what_joint_asks_of_a_frame_is_told_in_words() -> None:
+  asked = joint_config.Config()
+  clear = f'clear by {asked.reading.min_clear:g}'
+  swift = scenario.Scenario(language='swift').agreement
+  told = ' '.join(joint_description.of(swift, asked).frames)
+  assert clear in told
+  assert 'from any side' in told
+  assert 'of the hover point' in told
+  brisk = scenario.Scenario(language='brisk').agreement
+  told = ' '.join(joint_description.of(brisk, asked).frames)
+  assert f'up to {asked.reading.max_angle_deg:g} degrees' in told
+  assert 'of the hover point' not in told

@@ -14,7 +14,7 @@ from waggle_tasks.experiments.episodes import rollout
 from waggle_tasks.experiments.record import episode
 from waggle_tasks.protocol import agreement
 
-RECEIVER = 'klt'
+RECEIVER, READER = 'klt', 'joint'  # Of the paper's language, and of others.
 COUNTS = (1, 2)  # Of processes.
 # `ru_maxrss` is in kilobytes on Linux and in bytes on macOS (getrusage(2)).
 _UNIT_MB = 2**-20 if sys.platform == 'darwin' else 2**-10
@@ -72,7 +72,7 @@ def run(
   clock: processes.Clock = time.perf_counter,
   onlookers: Sequence[episode.Onlooker] = (),
 ) -> Loop:
-  """Runs a broadcast with the paper's receiver.
+  """Runs a broadcast with the paper's receiver, or who reads its language.
 
   Args:
     scene: The scenario.
@@ -81,7 +81,7 @@ def run(
   """
   watch = _Watch(clock)
   cpu_s, begin_s = time.process_time(), time.perf_counter()
-  rollout.run(scene, RECEIVER, [*onlookers, watch])
+  rollout.run(scene, receiver(scene), [*onlookers, watch])
   return Loop(
     scene.observers,
     watch.steps,
@@ -90,6 +90,11 @@ def run(
     time.process_time() - cpu_s,
     scene.agreement.frame_s,
   )
+
+
+def receiver(scene: scenario.Scenario) -> str:
+  """Who reads what is spoken."""
+  return RECEIVER if scene.agreement.language is None else READER
 
 
 def repeat(

@@ -14,9 +14,10 @@ from waggle_tasks.experiments.bench_parts import (
   readers,
   stages,
 )
-from waggle_tasks.protocol import agreement, checks, symbols
+from waggle_tasks.protocol import agreement, checks, languages, symbols
 
 OBSERVERS = (1, 2, 4, 8, 16)
+LANGUAGES = (scenario.PAPER, *languages.LANGUAGES)
 BROADCASTS = 20  # How many in one process, for its memory.
 # An arc on which 16 observers stand 0.18 m apart, and fewer see the same.
 _HALF_SPAN_DEG = 60.0
@@ -74,6 +75,13 @@ class Settings:
     seconds = scene.pauses.initial_hover_s + scene.pauses.pause_s
     seconds += scene.codebook[symbols.Symbol.START].duration_s
     return self._first(seconds)
+
+  @property
+  def spoken(self) -> list[scenario.Scenario]:
+    """The default broadcast in the paper's language, and in each other."""
+    return [
+      dataclasses.replace(self.whole, language=name) for name in LANGUAGES
+    ]
 
   @property
   def crowds(self) -> list[scenario.Scenario]:
@@ -136,6 +144,9 @@ SECTIONS: dict[str, Callable[[Settings], Any]] = {
   ),
   'realtime': lambda settings: _alone(
     loops.repeat, settings, what=[settings.whole]
+  ),
+  'languages': lambda settings: _alone(
+    loops.repeat, settings, what=settings.spoken
   ),
   'dynamics': lambda settings: _alone(pilots.measure, settings),
   'observers': lambda settings: _alone(

@@ -126,6 +126,43 @@ def _realtime(found: Sequence[loops.Loop]) -> str:
   return table.render(header, rows)
 
 
+def _by_languages(
+  found: Sequence[loops.Loop],
+) -> dict[str, Sequence[loops.Loop]]:
+  count = len(sections.LANGUAGES)
+  return {name: found[k::count] for k, name in enumerate(sections.LANGUAGES)}
+
+
+def _speeds(found: Sequence[loops.Loop]) -> list[float]:
+  """How many times as fast as real time, with everything."""
+  return [loop.simulated_s / loop.whole_s for loop in found]
+
+
+def _language_ratios(found: Sequence[loops.Loop]) -> Ratios:
+  (paper, usual), *others = _by_languages(found).items()
+  return {
+    f'speed of a broadcast, {name} / {paper}': _ratio(
+      _speeds(own), _speeds(usual)
+    )
+    for name, own in others
+  }
+
+
+def _languages(found: Sequence[loops.Loop]) -> str:
+  header = (
+    'default broadcast', 'simulated s', 's with everything',
+    'faster than real time',
+  )  # fmt: skip
+  rows = [
+    (
+      name, _middle([loop.simulated_s for loop in own], 2),
+      _middle([loop.whole_s for loop in own], 2), _middle(_speeds(own), 1),
+    )
+    for name, own in _by_languages(found).items()
+  ]  # fmt: skip
+  return table.render(header, rows)
+
+
 def _dynamics_ratios(found: pilots.Flying) -> Ratios:
   usual, *others = found.whole
   out: Ratios = {}
@@ -211,6 +248,7 @@ _PARTS: dict[str, tuple[Callable[..., str], Callable[..., Ratios]]] = {
   'stages': (_stages, lambda found: {}),
   'receivers': (_receivers, _receiver_ratios),
   'realtime': (_realtime, _realtime_ratios),
+  'languages': (_languages, _language_ratios),
   'dynamics': (_dynamics, _dynamics_ratios),
   'observers': (_observers, _observer_ratios),
   'memory': (_memory, lambda found: {}),

@@ -147,6 +147,10 @@ CLAIMS = {
   'sway-dancer': _sweep('sway', 2, table=2, performer_drift_m='0.002'),
   'hover': Claim('hover', TEXT, ('drift',)),
   'languages': Claim('languages', TEXT, ('languages',)),
+  'gentle': _sweep(
+    'gentle', 1, '--language=gentle', '--dynamics=rotors', receiver='joint',
+    observers=1, distance_m='3.0', bearing_deg='75',
+  ),
   'hover-dancer': _sweep(
     'hover-dancer', 2, '--performer_hover=mocap', observers=1,
     distance_m='1.6', bearing_deg='45',

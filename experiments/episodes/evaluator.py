@@ -14,7 +14,7 @@ import numpy as np
 from waggle_tasks import scenario
 from waggle_tasks.agents import observer_agent, receiver
 from waggle_tasks.arenas import layouts
-from waggle_tasks.experiments.episodes import reasons
+from waggle_tasks.experiments.episodes import diagnosis, reasons
 from waggle_tasks.experiments.record import episode, verdicts
 from waggle_tasks.protocol import flight
 from waggle_tasks.tasks import progress, safety
@@ -87,7 +87,7 @@ def _judge_reading(
   until_s = start_s if flies and start_s is not None else math.inf
   failures += _early_motion(rollout, name, until_s)
   if message is None or decoded is None:
-    why = reasons.diagnose(events)
+    why = diagnosis.diagnose(scene, events)
     found = [f'message: none, {why}', *reasons.find(scene, rollout, name)]
     return verdicts.Outcome(
       name, expected, start_s=start_s,

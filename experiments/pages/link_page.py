@@ -77,7 +77,8 @@ def draw(
       tag('h2', 'What is delivered'),
       *(markup.table(*each) for each in link_tables.tables(rows, airtime_s)),
       *(
-        tag('p', line, class_='faint') for line in link_tables.legend(airtime_s)
+        tag('p', line, class_='faint')
+        for line in link_tables.legend(rows, airtime_s)
       ),
       _conditions(rows),
     ),

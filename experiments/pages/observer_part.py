@@ -3,12 +3,14 @@
 from waggle_tasks.agents import description, outsiders, receivers
 from waggle_tasks.experiments.pages import (
   document,
+  frames_part,
   gesture_plots,
   markup,
   signals,
   timelines,
 )
 from waggle_tasks.experiments.record import archive, verdicts
+from waggle_tasks.experiments.record import told as told_lib
 from waggle_tasks.experiments.record import traces as traces_lib
 
 tag = markup.tag
@@ -19,7 +21,6 @@ def draw(run: archive.Run, outcome: verdicts.Outcome) -> markup.Markup:
   name = outcome.observer
   trace = run.traces.get(name)
   told = _told(run, trace)
-  events = timelines.motions(run.events[name])
   plots = tag('p', 'No track was kept.', class_='faint')
   if trace is not None and len(trace.times_s):
     plots = tag('div', signals.draw(trace, run.end_s, told), class_='scroll')
@@ -28,13 +29,26 @@ def draw(run: archive.Run, outcome: verdicts.Outcome) -> markup.Markup:
     tag('h2', name, ' ', document.chip(not outcome.failures, _word(outcome))),
     _outcome(outcome),
     plots,
-    tag('h3', f'Motions of {name}'),
-    gesture_plots.draw(events, trace, told)
-    if events
-    else tag('p', 'It saw no motion.', class_='faint'),
+    *_read(run, name, told),
     id=name,
     class_='observer',
   )
+
+
+def _read(
+  run: archive.Run, name: str, told: description.Description
+) -> list[markup.Markup]:
+  """Its frames, if it reads them as a whole; else its motions."""
+  if frames_part.are_told(run, name):
+    return [
+      tag('h3', f'Frames of {name}'),
+      frames_part.draw(run, name, told.frames),
+    ]
+  events = timelines.motions(run.events[name])
+  drawn = tag('p', 'It saw no motion.', class_='faint')
+  if events:
+    drawn = gesture_plots.draw(events, run.traces.get(name), told)
+  return [tag('h3', f'Motions of {name}'), drawn]
 
 
 def _told(
@@ -70,5 +84,7 @@ def _outcome(outcome: verdicts.Outcome) -> markup.Markup:
     value = getattr(outcome, field)
     if isinstance(value, float):
       value = f'{value * scale:.{digits}f}'
+    elif value is not None:
+      value = told_lib.short(value)
     cells.append('\u2013' if value is None else value)
   return markup.table(('', *(name for name, *_ in columns)), [['', *cells]])

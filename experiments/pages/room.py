@@ -195,7 +195,7 @@ def dance(run: archive.Run) -> markup.Markup | None:
   for number, (sent, part) in enumerate(zip(run.sent, parts, strict=False), 1):
     colour = palette.SYMBOLS[sent.symbol]
     chip = markup.tag(
-      'span', str(sent.symbol), class_='symbol',
+      'span', sent.mark.label, class_='symbol',
       style=f'background:{colour};color:{palette.ink(colour)}',
     )  # fmt: skip
     drawing = markup.tag(

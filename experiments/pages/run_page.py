@@ -13,6 +13,7 @@ from waggle_tasks.agents import receivers
 from waggle_tasks.experiments.pages import (
   document,
   flights,
+  heights,
   markup,
   observer_part,
   room,
@@ -25,6 +26,7 @@ from waggle_tasks.experiments.record import (
   flown,
   scenario_fields,
   story,
+  told,
   verdicts,
 )
 from waggle_tasks.experiments.results import palette
@@ -38,8 +40,8 @@ _DATA = (
 
 # Of a scenario, what its one line says anyhow.
 _TOLD = (
-  'control', 'payload', 'heading_step_deg', 'distance_unit_m', 'observers',
-  'layout', 'distance_m', 'jitter_m', 'seed',
+  'control', 'payload', 'bits', 'heading_step_deg', 'distance_unit_m',
+  'observers', 'layout', 'distance_m', 'jitter_m', 'seed',
 )  # fmt: skip
 
 tag = markup.tag
@@ -52,7 +54,7 @@ def write(folder: pathlib.Path) -> pathlib.Path:
     ArchiveError: if it is no run folder, or damaged.
     TraceError: the same, of its traces; FlownError, of flights.
   """
-  wrong = AttributeError, KeyError, TypeError, receivers.ReceiverError
+  wrong = AttributeError, LookupError, TypeError, receivers.ReceiverError
   try:
     whole = draw(archive.load(folder), videos(folder))
   except wrong as error:
@@ -103,19 +105,25 @@ def draw(run: archive.Run, films: Sequence[str]) -> markup.Markup:
 
 def _title(run: archive.Run) -> str:
   verdict = 'passed' if run.result.passed else 'FAILED'
-  return f'{run.scenario["payload"]}, {verdict} \u2013 waggle broadcast'
+  return f'{_said(run)}, {verdict} \u2013 waggle broadcast'
+
+
+def _said(run: archive.Run) -> str:
+  """What was sent."""
+  return told.message(run.scenario['payload'], run.scenario.get('bits', ''))
 
 
 def _facts(run: archive.Run) -> dict[str, Any]:
   """What the script says about a moment."""
+  agreed = run.config.agreement
   readings = {
     name: [
-      [0.0, story.Reading().status],
-      *([t, reading.status] for t, reading in story.readings(events)),
+      [0.0, story.Reading(agreed).status],
+      *([t, reading.status] for t, reading in story.readings(events, agreed)),
     ]
     for name, events in run.events.items()
   }
-  sent = [[s.begin_s, s.end_s, str(s.symbol)] for s in run.sent]
+  sent = [[s.begin_s, s.end_s, s.words] for s in run.sent]
   return {
     'end': run.end_s,
     'sent': sent,
@@ -125,16 +133,15 @@ def _facts(run: archive.Run) -> dict[str, Any]:
 
 
 def _head(run: archive.Run) -> markup.Markup:
-  scene, passed = run.scenario, run.result.passed
-  outcomes = run.result.outcomes
+  passed, outcomes = run.result.passed, run.result.outcomes
   expecting = sum(o.expected is not None for o in outcomes)
   if expecting:
-    words = f'{run.result.correct} of {expecting} decoded {scene["payload"]}'
+    words = f'{run.result.correct} of {expecting} decoded {_said(run)}'
   else:
     words = 'nothing was to be decoded'
   chips = []
   for each in outcomes:
-    words_ = [each.observer, ' ', each.decoded or 'no message']
+    words_ = [each.observer, ' ', told.short(each.decoded or 'no message')]
     link = tag('a', *words_, href=f'#{each.observer}')
     chips.append(document.chip(not each.failures, link))
   verdict = document.chip(passed, 'group passed' if passed else 'group FAILED')
@@ -149,10 +156,10 @@ def _head(run: archive.Run) -> markup.Markup:
 
 def _changes(run: archive.Run) -> markup.Markup | None:
   """What is unlike the default: disturbances, looks, languages."""
-  told: tuple[str, ...] = _TOLD
+  said: tuple[str, ...] = _TOLD
   if run.scenario['layout'] == 'arc':
-    told = (*told, 'half_span_deg')
-  found = changes.among(run.scenario, told)
+    said = (*said, 'half_span_deg')
+  found = changes.among(run.scenario, said)
   if not found:
     return None
   return tag('p', tag('b', 'Changed: '), ', '.join(found), class_='changed')
@@ -173,9 +180,13 @@ def describe(run: archive.Run) -> str:
   elif not isinstance(layout, str):
     where = scenario_fields.layout_name(layout)
   control = '' if scene['control'] == 'none' else f'{scene["control"]}; '
+  said = (
+    f'payload {bits.bits}: {way}, heading {turn_deg:g}\u00b0, {reach_m:g} m'
+  )
+  if scene.get('bits'):
+    said = f'data {_said(run)}'
   return (
-    f'{control}payload {bits.bits}: {way}, heading {turn_deg:g}\u00b0,'
-    f' {reach_m:g} m; observers: {scene["observers"]}; {where}; jitter'
+    f'{control}{said}; observers: {scene["observers"]}; {where}; jitter'
     f' {scene["jitter_m"]:g} m, seed {scene["seed"]}; receiver'
     f' {run.config.receiver}; {run.end_s:.2f} s simulated'
   )
@@ -268,7 +279,10 @@ def _flights(run: archive.Run) -> markup.Markup:
 
 
 def _dance(run: archive.Run) -> list[markup.Markup]:
-  """Every gesture as it was flown."""
+  """Every gesture as it was flown, or the heights of levels."""
+  if (drawn := heights.draw(run)) is not None:
+    title = 'What the performer flew'
+    return [tag('h3', title), tag('div', drawn, class_='scroll')]
   drawn = room.dance(run)
   if drawn is None:
     return []

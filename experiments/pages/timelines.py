@@ -1,10 +1,19 @@
 """What was sent and what each observer made of it, all on one time axis."""
 
 from collections.abc import Sequence
+import itertools
+import re
 
 from waggle_tasks.agents import observer_agent, receiver
 from waggle_tasks.experiments.pages import markup, plot
-from waggle_tasks.experiments.record import archive, episode, story
+from waggle_tasks.experiments.record import (
+  archive,
+  episode,
+  frames,
+  marks,
+  moves,
+  story,
+)
 from waggle_tasks.experiments.results import palette
 from waggle_tasks.protocol.symbols import Symbol
 from waggle_tasks.tasks import safety
@@ -19,6 +28,11 @@ def draw(run: archive.Run) -> markup.Markup:
   across = plot.time_scale(run.end_s)
   top = 4.0
   out = [_name('sent', top), *_sent(run.sent, across, top)]
+  parts = _parts(run.sent)
+  if parts:
+    top += _ROW
+    out += [_name('packets' if 'packet' in parts[0].part else 'rounds', top)]
+    out += [_at(_part(part, across), top) for part in parts]
   top += _ROW + 8
   for name, events in run.events.items():
     out.append(
@@ -30,12 +44,12 @@ def draw(run: archive.Run) -> markup.Markup:
     rows = (
       ('', _motions(run, name, across)),
       ('nulls', _nulls(events, across)),
-      ('frame', _states(events, run.end_s, across)),
+      ('frame', _states(run, events, across)),
       ('navigation', _deeds(events, run.end_s, across)),
     )
-    for label, marks in rows:
+    for label, blocks in rows:
       out.append(_name(label, top))
-      out += [_at(mark, top) for mark in marks]
+      out += [_at(each, top) for each in blocks]
       top += _ROW
     top += 8
   grid = plot.time_axis(across, 0, top)
@@ -79,21 +93,40 @@ def block(
 
 
 def _sent(
-  sent: Sequence[story.Sent], across: plot.Scale, top: float
+  sent: Sequence[moves.Sent], across: plot.Scale, top: float
 ) -> list[markup.Markup]:
   return [
     _at(
       block(
         across(each.begin_s),
         across(each.end_s),
-        str(each.symbol),
+        each.mark.label,
         palette.SYMBOLS[each.symbol],
-        f'sent {each.symbol}, {each.begin_s:.2f} to {each.end_s:.2f} s',
+        f'sent {each.words}, {each.begin_s:.2f} to {each.end_s:.2f} s',
       ),
       top,
     )
     for each in sent
   ]
+
+
+def _parts(sent: Sequence[moves.Sent]) -> list[moves.Sent]:
+  """The packets or rounds that are sent, each from START to END."""
+  groups = itertools.groupby(sent, key=lambda each: each.part)
+  spans = [(part, [*members]) for part, members in groups if part]
+  return [
+    moves.Sent(marks.of(Symbol.START), own[0].begin_s, own[-1].end_s, part)
+    for part, own in spans
+  ]
+
+
+def _part(part: moves.Sent, across: plot.Scale) -> markup.Markup:
+  """A packet or a round; where there is little room, by numbers alone."""
+  begin, end = across(part.begin_s), across(part.end_s)
+  short = re.sub(r'\w+ (\d+) of (\d+)', r'\1/\2', part.part)
+  label = part.part if len(part.part) * _SMALL_PX + 2 <= end - begin else short
+  hint = f'{part.part}, {part.begin_s:.2f} to {part.end_s:.2f} s'
+  return block(begin, end, label, _BIT, hint)
 
 
 def _motions(
@@ -103,6 +136,7 @@ def _motions(
   trace = run.traces.get(name)
   spans = {m.confirmed_s: m for m in trace.motions} if trace else {}
   out = []
+  seen = frames.read(run.events[name], run.config.agreement)
   for event in motions(run.events[name]):
     span = spans.get(event.time_s)
     begin_s = span.begin_s if span else event.time_s
@@ -111,6 +145,8 @@ def _motions(
     if event.recognition is not None:
       scores = event.recognition
       hint += f', RMSE {scores.rmse:.3f}. {scores.reason}'
+    if event.rejection is not None:
+      hint += f'. {event.rejection}'
     out.append(
       block(
         across(begin_s), across(event.time_s),
@@ -118,7 +154,22 @@ def _motions(
         hint, unknown,
       )
     )  # fmt: skip
-  return out
+  return [*out, *(_read(slot, each, across) for each in seen
+                  for slot in each.slots)]  # fmt: skip
+
+
+def _read(
+  slot: moves.Sent, whole: frames.Frame, across: plot.Scale
+) -> markup.Markup:
+  """A symbol of a frame that was read as a whole, in its time."""
+  hint = (
+    f'read {slot.mark.words}, {slot.begin_s:.2f} to {slot.end_s:.2f} s; the'
+    f' frame at {whole.time_s:.2f} s: {whole.words}'
+  )
+  colour = palette.SYMBOLS[slot.symbol]
+  return block(
+    across(slot.begin_s), across(slot.end_s), slot.mark.label, colour, hint
+  )
 
 
 def motions(events: Sequence[episode.Event]) -> list[receiver.Event]:
@@ -150,11 +201,12 @@ def _nulls(
 
 
 def _states(
-  events: Sequence[episode.Event], end_s: float, across: plot.Scale
+  run: archive.Run, events: Sequence[episode.Event], across: plot.Scale
 ) -> list[markup.Markup]:
   """What the frame parser waited for, from event to event."""
-  changes = [(0.0, story.Reading())]
-  for time_s, reading in story.readings(events):
+  agreed, end_s = run.config.agreement, run.end_s
+  changes = [(0.0, story.Reading(agreed))]
+  for time_s, reading in story.readings(events, agreed):
     if reading.deed:
       end_s = min(end_s, time_s)  # Navigating, it parses no more.
     elif reading.waits_for != changes[-1][1].waits_for:
@@ -165,6 +217,8 @@ def _states(
     label = reading.waits_for
     colour = _WAITING.get(label, _BIT)
     hint = f'waits for {label}, {begin_s:.2f} to {stop_s:.2f} s'
+    if reading.parts:
+      hint += f'; {reading.parts}'
     out.append(block(across(begin_s), across(stop_s), label, colour, hint))
   return out
 

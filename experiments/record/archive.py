@@ -11,7 +11,7 @@ import zipfile
 import numpy as np
 
 from waggle_tasks import errors, plain, scenario
-from waggle_tasks.experiments.record import encoding, episode, story, verdicts
+from waggle_tasks.experiments.record import encoding, episode, moves, verdicts
 from waggle_tasks.experiments.record import traces as traces_lib
 from waggle_tasks.protocol import agreement as agreement_lib
 from waggle_tasks.protocol import controls, payload
@@ -89,7 +89,7 @@ class Run:
     return self.config.scenario
 
   @property
-  def sent(self) -> tuple[story.Sent, ...]:
+  def sent(self) -> tuple[moves.Sent, ...]:
     """What the performer flew."""
     scene = self.scenario
     bits = payload.Payload.from_bits(
@@ -99,7 +99,7 @@ class Run:
       scene['control'], bits, scene['seed'], self.config.agreement,
       scene['stop_s'], scene.get('bits', ''), scene.get('repeat', 1),
     )  # fmt: skip
-    return story.sent(performance, self.end_s)
+    return moves.sent(performance, self.config.agreement, self.end_s)
 
   @property
   def end_s(self) -> float:

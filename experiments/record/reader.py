@@ -8,7 +8,7 @@ import numpy as np
 
 from waggle_tasks.agents import provenance, receiver, receivers
 from waggle_tasks.experiments.machine import table
-from waggle_tasks.experiments.record import archive, capture, writer
+from waggle_tasks.experiments.record import archive, capture, frames, writer
 from waggle_tasks.protocol import agreement as agreement_lib
 
 
@@ -17,6 +17,7 @@ class Reader:
 
   Attributes:
     name: The receiver's name.
+    agreement: What both sides know.
     receiver: The receiver.
     events: All it confirmed, in order.
     chain: The hashes of its images.
@@ -38,7 +39,7 @@ class Reader:
     Raises:
       ReceiverError: if the receiver is not known.
     """
-    self.name = name
+    self.name, self.agreement = name, agreement
     self.receiver = receivers.make(name, agreement)
     self.events: list[receiver.Event] = []
     self.chain = provenance.Chain()
@@ -128,8 +129,7 @@ def report(readers: Sequence[Reader]) -> str:
   for time_s in times_s:
     row = [f'{time_s:.2f}']
     for reader in readers:
-      event = next((e for e in reader.events if e.time_s == time_s), None)
-      row += _cells(event)
+      row += _cells([e for e in reader.events if e.time_s == time_s])
     rows.append(row)
   lines = [table.render(header, rows)]
   for reader in readers:
@@ -138,17 +138,22 @@ def report(readers: Sequence[Reader]) -> str:
       for event in reader.events
       for reason in _reasons(event)
     ]
+    lines += [
+      f'{reader.name}: {each.time_s:.2f} s: {each.words}'
+      for each in frames.read(reader.events, reader.agreement)
+      if each.slots
+    ]
   return '\n'.join(lines)
 
 
-def _cells(event: receiver.Event | None) -> list[str]:
-  if event is None:
-    return [''] * 5
-  scores = event.recognition
+def _cells(events: Sequence[receiver.Event]) -> list[str]:
+  """What was confirmed at one time, and the scores of it."""
+  names = ' '.join(event.symbol for event in events)
+  scores = next((e.recognition for e in events if e.recognition), None)
   if scores is None:
-    return [str(event.symbol), '', '', '', '']
+    return [names, '', '', '', '']
   return [
-    str(event.symbol),
+    names,
     table.number(scores.rmse, 3),
     table.number(scores.margin, 3),
     table.number(scores.closure, 3),

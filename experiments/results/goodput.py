@@ -27,6 +27,8 @@ class Tally:
     delivered: How many were read by all.
     wrong: How many were read as others.
     unseen: How many of the others some observer recognised nothing of.
+    read_bits: Bits of all messages that observers read, right or not.
+    right_bits: How many of them are as sent.
   """
 
   bits: int
@@ -35,6 +37,8 @@ class Tally:
   delivered: int
   wrong: int
   unseen: int
+  read_bits: int = 0
+  right_bits: int = 0
 
   @property
   def refused(self) -> int:
@@ -108,10 +112,22 @@ def tally(rows: Sequence[Row]) -> Tally:
   scenes = [scenario_fields.make(each[0].scenario) for each in sent]
   seconds = sum(map(airtime_s, scenes)) / len(scenes) * len(sent[0])
   fates = [*map(_fate, sent)]
+  bits = len(rows[0].scenario['bits'] or rows[0].scenario['payload'])
+  pairs = [
+    (each.expected, each.decoded)
+    for messages in sent for each in _first(messages)
+    if each is not None and each.expected and each.decoded
+  ]  # fmt: skip
   return Tally(
-    len(rows[0].scenario['payload']), seconds, len(fates),
-    *map(fates.count, ('delivered', 'wrong', 'unseen')),
-  )  # fmt: skip
+    bits,
+    seconds,
+    len(fates),
+    fates.count('delivered'),
+    fates.count('wrong'),
+    fates.count('unseen'),
+    sum(max(len(said), len(read)) for said, read in pairs),
+    sum(a == b for pair in pairs for a, b in zip(*pair, strict=False)),
+  )
 
 
 def whole(rows: Sequence[Row]) -> list[Row]:
@@ -135,13 +151,24 @@ def _sendings(row: Row) -> int:
   return link_schemes.Scheme.of(row.cell[link_cases.SCHEME]).sendings
 
 
+def _observers(
+  sent: Sequence[Row],
+) -> list[tuple[case_rows.Exposure, ...]]:
+  """What became of each observer in the broadcasts of one message."""
+  return [*zip(*(row.outcomes for row in sent), strict=True)]
+
+
+def _first(sent: Sequence[Row]) -> list[case_rows.Exposure | None]:
+  """What each observer read first of one message; None for nothing."""
+  return [
+    next((each for each in seen if each.decoded is not None), None)
+    for seen in _observers(sent)
+  ]
+
+
 def _fate(sent: Sequence[Row]) -> str:
   """What became of one message, by all of its broadcasts."""
-  observers = [*zip(*(row.outcomes for row in sent), strict=True)]
-  first = [
-    next((each for each in seen if each.decoded is not None), None)
-    for seen in observers
-  ]
+  observers, first = _observers(sent), _first(sent)
   if any(each is not None and each.wrong for each in first):
     return 'wrong'
   if all(first):

@@ -29,7 +29,7 @@ def report(rows: Sequence[goodput.Row], airtime_s: float) -> str:
     airtime_s: How much time all schemes are given to be compared.
   """
   parts = [table.render(*each) for each in tables(rows, airtime_s)]
-  lines = [textwrap.fill(line, 80) for line in legend(airtime_s)]
+  lines = [textwrap.fill(line, 80) for line in legend(rows, airtime_s)]
   return '\n\n'.join([*parts, '\n'.join(lines), '\n'.join(totals(rows))])
 
 
@@ -44,19 +44,26 @@ def tables(rows: Sequence[goodput.Row], airtime_s: float) -> list[Table]:
 
 
 def _table(rows: Sequence[goodput.Row], factor: str, airtime_s: float) -> Table:
+  data = _has_data(rows)
   header = (
     'scheme', factor, 's', 'delivered', '95 %', 'wrong', 'at most', 'refused',
-    'unseen', 'bit/s', f'in {airtime_s:.0f} s', '95 %',
+    'unseen', *(('bits right',) if data else ()), 'bit/s',
+    f'in {airtime_s:.0f} s', '95 %',
   )  # fmt: skip
   groups = goodput.grouped(rows, link_cases.SCHEME, factor)
   return header, [
     (scheme, f'{value:g}' if isinstance(value, float) else value,
-     *_cells(goodput.tally(members), airtime_s))
+     *_cells(goodput.tally(members), airtime_s, data))
     for (scheme, value), members in groups.items()
   ]  # fmt: skip
 
 
-def _cells(got: goodput.Tally, airtime_s: float) -> tuple[str, ...]:
+def _has_data(rows: Sequence[goodput.Row]) -> bool:
+  """Whether other bits than payloads are sent."""
+  return any(row.scenario['bits'] for row in rows)
+
+
+def _cells(got: goodput.Tally, airtime_s: float, data: bool) -> tuple[str, ...]:
   times, limits = got.fits(airtime_s), got.limits
   within = [got.within(airtime_s, share) for share in (got.share, *limits)]
   share = f'{within[0]:.1%}'
@@ -66,8 +73,18 @@ def _cells(got: goodput.Tally, airtime_s: float) -> tuple[str, ...]:
   return (
     f'{got.seconds:.1f}', f'{got.delivered}/{got.messages}', _limits(*limits),
     str(got.wrong), f'{got.wrong_limit:.1%}', str(got.refused),
-    str(got.unseen), f'{got.goodput:.3f}', *(later if times else ('-', '-')),
+    str(got.unseen), *((_right(got),) if data else ()), f'{got.goodput:.3f}',
+    *(later if times else ('-', '-')),
   )  # fmt: skip
+
+
+def _right(got: goodput.Tally) -> str:
+  """The share of right bits, of all that was read."""
+  if not got.read_bits:
+    return '-'
+  share = f'{got.right_bits / got.read_bits:.2%}'
+  is_whole = got.right_bits == got.read_bits
+  return share if is_whole or share != '100.00%' else '> 99.99%'
 
 
 def _limits(low: float, high: float) -> str:
@@ -75,8 +92,12 @@ def _limits(low: float, high: float) -> str:
   return f'{math.floor(low * 100)}-{math.ceil(high * 100)}'
 
 
-def legend(airtime_s: float) -> list[str]:
+def legend(rows: Sequence[goodput.Row], airtime_s: float) -> list[str]:
   """What the columns of a table are."""
+  right = [
+    'bits right: of all bits of messages that observers read, the share that is'
+    ' as sent.'
+  ]  # fmt: skip
   return [
     's: seconds of a message with all its rounds, from the first hover to the'
     ' rest that confirms the last END.',
@@ -85,6 +106,7 @@ def legend(airtime_s: float) -> list[str]:
     'wrong: read as another message, at most so many with 95 % confidence'
     ' (one-sided). refused: something was recognised, no message believed.'
     ' unseen: nothing was recognised.',
+    *(right if _has_data(rows) else ()),
     'bit/s: bits of a message x share delivered / seconds.',
     f'in {airtime_s:.0f} s: how many whole messages fit into this time, and'
     ' which share is delivered if all of them say the same and losses are'

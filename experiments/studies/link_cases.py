@@ -31,6 +31,8 @@ class Plan:
     bearings_deg: ...and at which angles to the dance.
     broadcasts: How many messages are sent in each cell.
     observers: How many observers each of them has.
+    bits: What is sent in place of a payload: characters of 0 and 1, or
+      'random:64' for as many that each message draws; empty for payloads.
   """
 
   schemes: Sequence[link_schemes.Scheme]
@@ -39,6 +41,7 @@ class Plan:
   bearings_deg: Sequence[float]
   broadcasts: int
   observers: int
+  bits: str = ''
 
   def __post_init__(self) -> None:
     for field in ('conditions', 'distances_m', 'bearings_deg'):
@@ -76,7 +79,7 @@ def cases(plan: Plan) -> tuple[list[sweep_cases.Sample], list[str]]:
       out += [
         sample
         for number in range(plan.broadcasts)
-        for sample in _message(scheme, cell, number, plan.observers)
+        for sample in _message(scheme, cell, number, plan)
       ]
     except errors.WaggleError as error:
       refused.append(f'{scheme.name}, {condition}: {error}')
@@ -89,14 +92,15 @@ def _message(
   scheme: link_schemes.Scheme,
   cell: dict[str, Any],
   number: int,
-  observers: int,
+  plan: Plan,
 ) -> list[sweep_cases.Sample]:
   """One message: as many broadcasts as the scheme sends it in."""
   condition = link_conditions.CONDITIONS[cell[CONDITION]]
   base = {
     **scenario_fields.defaults(), **scheme.values, **condition.values,
     'distance_m': cell['distance_m'], 'bearing_deg': cell['bearing_deg'],
-    'observers': observers, 'payload': sweep_cases.RANDOM,
+    'observers': plan.observers, 'payload': sweep_cases.RANDOM,
+    'bits': plan.bits,
   }  # fmt: skip
   samples = [sweep_cases.draw({}, base | _drawn(condition, number), number)]
   if scheme.sendings > 1:  # The same payload, and seeds that follow from one.

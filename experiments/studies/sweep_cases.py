@@ -10,7 +10,7 @@ from typing import Any
 from waggle_tasks import errors
 from waggle_tasks import scenario as scenario_lib
 from waggle_tasks.experiments.record import scenario_fields
-from waggle_tasks.protocol import checks
+from waggle_tasks.protocol import checks, packets
 
 RANDOM, ALL = 'random', 'all'
 MAX_CASES = 1_000_000
@@ -100,14 +100,14 @@ def cases(
 
   Each case has a seed of its own: 32 bits of a SHA-256 of the repeat and of all
   values of its scenario that are not the defaults, the base's seed among them.
-  A random payload comes from other bits of it. So more factors, values or
-  repeats leave the other cases as they are, and two sweeps never share a case
-  unless it is the same scenario.
+  A random payload, and random bits, come from other bits of it. So more
+  factors, values or repeats leave the other cases as they are, and two sweeps
+  never share a case unless it is the same scenario.
 
   Args:
     factors: See `grid`.
     base: All values of the scenario that the factors change; its payload may
-      be 'random'.
+      be 'random', and its bits 'random:64' or another number.
     repeats: How many episodes a cell has.
 
   Raises:
@@ -154,7 +154,7 @@ def _num_bits(values: Mapping[str, Any]) -> int:
 def draw(
   cell: Mapping[str, Any], base: Mapping[str, Any], repeat: int
 ) -> Sample:
-  """One case, with the seed and the payload of its own; see `cases`.
+  """One case, with the seed, the payload and the bits of its own; see `cases`.
 
   Raises:
     WaggleError: if the scenario breaks a rule.
@@ -166,7 +166,26 @@ def draw(
     bits = _num_bits(values)
     number = int.from_bytes(drawn[4:], 'little') % 2**bits
     values['payload'] = f'{number:0{bits}b}'
+  if values['bits'].startswith(RANDOM):
+    values['bits'] = _drawn_bits(values['bits'], drawn)
   return Sample(cell, repeat, values, scenario_fields.make(values))
+
+
+def _drawn_bits(text: str, drawn: bytes) -> str:
+  """As many bits as a text such as 'random:64' asks for.
+
+  Raises:
+    WaggleError: if it asks for none, for too many, or for something else.
+  """
+  _, colon, count = text.partition(':')
+  if not colon or not count.isdecimal():
+    raise SweepError(
+      f"`bits` must be characters of 0 and 1, or '{RANDOM}:N' for N bits that"
+      f' are drawn: got {text!r}'
+    )
+  packets.Packets.of(int(count))  # Refuses what no message holds.
+  long = hashlib.shake_256(drawn).digest(-(-int(count) // 8))
+  return ''.join(f'{byte:08b}' for byte in long)[: int(count)]
 
 
 def _seed_text(values: Mapping[str, Any], repeat: int) -> str:

@@ -9,7 +9,6 @@ from waggle_tasks import errors
 from waggle_tasks.experiments.machine import files
 from waggle_tasks.experiments.record import reader
 from waggle_tasks.experiments.video import encoders, layout, moment, page
-from waggle_tasks.protocol.symbols import Symbol
 
 _FPS = 12.5
 _LEAST_PX, _MOST_PX = 480, 960  # Width of the picture.
@@ -42,7 +41,7 @@ class AnnotatedFilm:
         f'`annotate` must be a new file in a folder that exists: got {path}'
       )
     self._path, self._name = path, work.name
-    self._watch = moment.Watch(work.name, work)
+    self._watch = moment.Watch(work.name, work, work.agreement)
     # How a picture is drawn, and who takes it; once the first one is here.
     self._made: tuple[page.Single, encoders.Encoder] | None = None
     self._begin_s = 0.0
@@ -80,7 +79,7 @@ class AnnotatedFilm:
     while self._begin_s + self._pictures / _FPS <= time_s + 1e-6:
       if shown is None:
         sight = self._watch.sight(image)
-        now = moment.Instant(time_s, Symbol.NULL, (sight,), {}, {})
+        now = moment.Instant(time_s, None, (sight,), {}, {})
         shown = drawing.draw(now)
       encoder.write(shown)
       self._pictures += 1

@@ -5,12 +5,12 @@ import pathlib
 
 from waggle_tasks import scenario
 from waggle_tasks.arenas import layouts
-from waggle_tasks.experiments.record import changes, episode, story
+from waggle_tasks.experiments.record import changes, episode, moves, told
 from waggle_tasks.experiments.video import encoders, layout, lens, page
 from waggle_tasks.protocol import checks
 
 # Of a scenario, what its title or the pictures themselves say.
-_TOLD = ('control', 'payload', 'layout', 'distance_m', 'observers')
+_TOLD = ('control', 'payload', 'bits', 'layout', 'distance_m', 'observers')
 
 
 class Film:
@@ -104,9 +104,15 @@ def composite(
   scene: scenario.Scenario, names: tuple[str, ...], scale: float = 1.0
 ) -> page.Composite:
   """A page of a scenario's composite for some of its observers."""
-  sent = story.sent(scene.performance, scene.episode_s)
+  sent = moves.sent(scene.performance, scene.agreement, scene.episode_s)
   return page.Composite(
-    names, title(scene), sent, scene.episode_s, scale, changes.of(scene, _TOLD)
+    names,
+    title(scene),
+    sent,
+    scene.agreement,
+    scene.episode_s,
+    scale,
+    changes.of(scene, _TOLD),
   )
 
 
@@ -122,4 +128,7 @@ def title(scene: scenario.Scenario) -> str:
   """A scenario in a line."""
   where = scene.layout if isinstance(scene.layout, str) else 'own layout'
   control = '' if scene.control == 'none' else f'{scene.control}, '
-  return f'{control}payload {scene.payload}, {where}, {scene.distance_m:g} m'
+  said = f'payload {scene.payload}'
+  if scene.bits:
+    said = f'data {told.message(scene.payload, scene.bits)}'
+  return f'{control}{said}, {where}, {scene.distance_m:g} m'

@@ -9,7 +9,7 @@ import numpy as np
 
 from waggle_tasks import scenario
 from waggle_tasks.entities import renderer
-from waggle_tasks.experiments.record import episode, story
+from waggle_tasks.experiments.record import episode, moves
 from waggle_tasks.experiments.video import layout, moment
 
 
@@ -29,7 +29,8 @@ class Lens:
       scene: What will be flown.
       shared: Which of `layout.SHARED` moments have images of.
     """
-    self._sent = story.sent(scene.performance, scene.episode_s)
+    self._sent = moves.sent(scene.performance, scene.agreement, scene.episode_s)
+    self._agreement = scene.agreement
     self._frame_s = scene.agreement.frame_s
     self._shared = {name: layout.SHARED[name] for name in shared}
     self._shadows = scene.appearance.shadows
@@ -44,7 +45,7 @@ class Lens:
     if step.timestep.first():
       names = [each.mjcf_model.model for each in task.observers]
       self._watches = {
-        name: moment.Watch(name, agent)
+        name: moment.Watch(name, agent, self._agreement)
         for name, agent in zip(names, step.team.agents, strict=True)
       }
       self._renderer = renderer.Renderer(step.environment.physics)
@@ -73,9 +74,9 @@ class Lens:
       )
     }
     sights = tuple(self._watches[name].sight(images[name]) for name in names)
-    symbol = story.symbol_at(self._sent, time_s)
+    sent = moves.sent_at(self._sent, time_s)
     places = {name: self._places(self._shared[name]) for name in shared}
-    return moment.Instant(time_s, symbol, sights, shared, places)
+    return moment.Instant(time_s, sent, sights, shared, places)
 
   def _places(self, camera: str) -> dict[str, tuple[float, float]]:
     """Columns and rows of the vehicles that stand before a camera."""

@@ -8,7 +8,8 @@ import numpy as np
 
 from waggle_tasks.agents import klt
 from waggle_tasks.agents import receiver as receiver_lib
-from waggle_tasks.experiments.record import episode, story
+from waggle_tasks.experiments.record import episode, moves, story
+from waggle_tasks.protocol import agreement as agreement_lib
 from waggle_tasks.protocol.symbols import Symbol
 from waggle_tasks.tasks import safety
 
@@ -40,14 +41,14 @@ class Instant:
 
   Attributes:
     time_s: Simulation time.
-    sent: What the performer flies.
+    sent: What the performer flies; None while it hovers.
     sights: Every observer on the page.
     shared: Images of the shared views by name, (H, W, 3) uint8 RGB each.
     places: In each of them, columns and rows of the vehicles by name.
   """
 
   time_s: float
-  sent: Symbol
+  sent: moves.Sent | None
   sights: tuple[View, ...]
   shared: dict[str, np.ndarray]
   places: dict[str, dict[str, tuple[float, float]]]
@@ -70,11 +71,19 @@ class Watched(Protocol):
 class Watch:
   """Follows one agent, frame by frame, to tell its sight at any moment."""
 
-  def __init__(self, name: str, agent: Watched) -> None:
-    """Follows an agent from the beginning of its episode."""
+  def __init__(
+    self, name: str, agent: Watched, agreement: agreement_lib.Agreement
+  ) -> None:
+    """Follows an agent from the beginning of its episode.
+
+    Args:
+      name: The observer's.
+      agent: The observer.
+      agreement: What both sides know.
+    """
     self._name, self._agent = name, agent
     self._events: list[episode.Event] = []
-    self._reading = story.Reading()
+    self._reading = story.Reading(agreement)
     self._trail_px: list[np.ndarray] = []
 
   def note(self, refusals: Sequence[safety.Refusal]) -> None:

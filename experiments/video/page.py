@@ -5,8 +5,16 @@ from typing import Protocol
 
 import numpy as np
 
-from waggle_tasks.experiments.record import story
-from waggle_tasks.experiments.video import layout, moment, panel, pen, tiles
+from waggle_tasks.experiments.record import moves
+from waggle_tasks.experiments.video import (
+  layout,
+  moment,
+  panel,
+  pen,
+  strip,
+  tiles,
+)
+from waggle_tasks.protocol import agreement as agreement_lib
 
 GROUND = '#14171c'
 
@@ -31,7 +39,8 @@ class Composite:
     self,
     names: Sequence[str],
     title: str,
-    sent: Sequence[story.Sent],
+    sent: Sequence[moves.Sent],
+    agreement: agreement_lib.Agreement,
     end_s: float,
     scale: float = 1.0,
     changed: Sequence[str] = (),
@@ -42,14 +51,15 @@ class Composite:
       names: Its observers, 1 to 5.
       title: What is being flown.
       sent: What the performer flies.
+      agreement: What both sides know.
       end_s: How long it lasts at most.
       scale: Size; at 1 it is 1024 pixels wide.
       changed: What of the scenario is unlike the default.
     """
     self._notes = panel.notes(changed)
     self._plan = layout.plan(len(names), scale, len(self._notes))
-    self._title = title
-    self._strip = panel.Strip(self._plan, names, sent, end_s)
+    self._title, self._agreement = title, agreement
+    self._strip = strip.Strip(self._plan, names, sent, agreement, end_s)
     self._canvas = np.empty((self._plan.height, self._plan.width, 3), np.uint8)
 
   @property
@@ -69,7 +79,7 @@ class Composite:
       tiles.shared(
         canvas, plan, picture, name, now.shared[name], now.places[name]
       )
-    panel.card(canvas, plan, now.sights)
+    panel.card(canvas, plan, now.sights, self._agreement)
     self._strip.draw(canvas, now)
     return canvas
 

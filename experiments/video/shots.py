@@ -9,7 +9,7 @@ from waggle_tasks import scenario
 from waggle_tasks.agents import receivers
 from waggle_tasks.arenas import layouts
 from waggle_tasks.experiments.episodes import rollout as rollout_lib
-from waggle_tasks.experiments.record import episode, story, traces
+from waggle_tasks.experiments.record import episode, moves, traces
 from waggle_tasks.experiments.results import palette
 from waggle_tasks.experiments.video import film, layout, lens, page, pen
 from waggle_tasks.protocol import agreement as agreement_lib
@@ -39,7 +39,9 @@ class Shots:
     self._at = scene.agreement.frames(_TIME_S)
     self._wanted = {
       frame
-      for gesture in firsts(story.sent(scene.performance, scene.episode_s))
+      for gesture in firsts(
+        moves.sent(scene.performance, scene.agreement, scene.episode_s)
+      )
       for frame in exposures(gesture, scene.agreement)
     }
     self.composite: np.ndarray | None = None
@@ -57,7 +59,7 @@ class Shots:
       self.images[frame] = seen['camera'].copy()
 
 
-def firsts(sent: Sequence[story.Sent]) -> list[story.Sent]:
+def firsts(sent: Sequence[moves.Sent]) -> list[moves.Sent]:
   """The first time that each gesture is flown, in the alphabet's order."""
   return [
     next(each for each in sent if each.symbol is symbol) for symbol in MOTIONS
@@ -65,7 +67,7 @@ def firsts(sent: Sequence[story.Sent]) -> list[story.Sent]:
 
 
 def exposures(
-  gesture: story.Sent, agreement: agreement_lib.Agreement
+  gesture: moves.Sent, agreement: agreement_lib.Agreement
 ) -> list[int]:
   """The frames in which the performer is shown on its way."""
   times_s = np.linspace(gesture.begin_s, gesture.end_s, 2 * _EXPOSURES - 1)
@@ -85,7 +87,7 @@ def take(receiver_name: str) -> dict[str, np.ndarray]:  # (H, W, 3) uint8 each
   shots = Shots(scene)
   receivers.make(receiver_name, scene.agreement)
   flown = rollout_lib.run(scene, receiver_name, [shots])
-  sent = story.sent(scene.performance, scene.episode_s)
+  sent = moves.sent(scene.performance, scene.agreement, scene.episode_s)
   trace = [*flown.traces.values()][_OBSERVER]
   return {
     'composite.png': np.asarray(shots.composite),
@@ -96,7 +98,7 @@ def take(receiver_name: str) -> dict[str, np.ndarray]:  # (H, W, 3) uint8 each
 
 
 def gestures(
-  sent: Sequence[story.Sent],
+  sent: Sequence[moves.Sent],
   images: Mapping[int, np.ndarray],
   trace: traces.Trace,
   agreement: agreement_lib.Agreement,

@@ -153,10 +153,11 @@ def _symbols(
   symbols, gap = sight.reading.symbols, plan.px(2)
   room = foot.right - left - gap
   while size > 1 and room < sum(
-    pen.chip_width(str(symbol), size) + gap for symbol in symbols
+    pen.chip_width(mark.label, size) + gap for mark in symbols
   ):
     size -= 1
-  for symbol in symbols:
+  for mark in symbols:
     left = gap + pen.chip(
-      canvas, str(symbol), left, _middle(foot), size, palette.SYMBOLS[symbol]
-    )
+      canvas, mark.label, left, _middle(foot), size,
+      palette.SYMBOLS[mark.symbol],
+    )  # fmt: skip

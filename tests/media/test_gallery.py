@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from waggle_tasks import scenario
-from waggle_tasks.experiments.record import story, traces
+from waggle_tasks.experiments.record import moves, traces
 from waggle_tasks.experiments.results import palette
 from waggle_tasks.experiments.video import shots
 
@@ -18,7 +18,9 @@ Waggle = Callable[..., subprocess.CompletedProcess[str]]
 
 def test_each_gesture_shows_the_performer_all_along_its_track() -> None:
   scene = scenario.Scenario()
-  sent = shots.firsts(story.sent(scene.performance, scene.episode_s))
+  sent = shots.firsts(
+    moves.sent(scene.performance, scene.agreement, scene.episode_s)
+  )
   assert [str(each.symbol) for each in sent] == ['START', '0', '1', 'END']
   images, times_s, centres_px = {}, [], []
   for gesture in sent:

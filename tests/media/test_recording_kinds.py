@@ -32,6 +32,14 @@ def fast(
 
 
 @pytest.fixture(scope='module')
+def swift(tmp_path_factory: pytest.TempPathFactory) -> kit.Dance:
+  """A message in levels, a few seconds long."""
+  path = tmp_path_factory.mktemp('swift') / 'x.capture'
+  scene = scenario.Scenario(observers=1, language='swift', payload='101101')
+  return kit.fly(path, scene)
+
+
+@pytest.fixture(scope='module')
 def papers(tmp_path_factory: pytest.TempPathFactory) -> kit.Dance:
   """The paper's broadcast."""
   path = tmp_path_factory.mktemp('papers') / 'x.capture'
@@ -64,6 +72,18 @@ def test_a_telling_kind_of_recording_gives_the_message(
   kind: kit.Kind, fast: kit.Dance, tmp_path: pathlib.Path
 ) -> None:
   assert unread(kind, fast, tmp_path, TELLING[kind.name]) == {}
+
+
+@kinds(
+  (
+    'gif-10hz.gif', 'h264-crf28.mp4', 'h264-12p5hz.mp4', 'h264-50hz.mp4',
+    'h264-news-only.mkv',
+  )
+)  # fmt: skip
+def test_a_recording_of_levels_gives_the_message(
+  kind: kit.Kind, swift: kit.Dance, tmp_path: pathlib.Path
+) -> None:
+  assert unread(kind, swift, tmp_path, ['joint']) == {}
 
 
 @pytest.mark.slow

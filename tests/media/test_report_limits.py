@@ -157,7 +157,7 @@ def test_without_final_null_the_message_stands_and_the_group_fails(
   assert outcome.end_s == outcome.start_s
   assert any('no final null' in failure for failure in outcome.failures)
   last = story.readings(run.rollout.events['observer_1'])[-1][1]
-  assert [*last.symbols] == ['START', *'000010', 'END']
+  assert [m.label for m in last.symbols] == ['START', *'000010', 'END']
   whole = story.readings(runs['view_bank'].rollout.events['observer_1'])
   assert whole[-1][1].symbols == last.symbols
 

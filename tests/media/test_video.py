@@ -15,7 +15,7 @@ from waggle_tasks import registry, scenario
 from waggle_tasks.agents import observer_agent, receiver
 from waggle_tasks.entities import renderer
 from waggle_tasks.experiments.episodes import rollout as rollout_lib
-from waggle_tasks.experiments.record import episode, story, writer
+from waggle_tasks.experiments.record import episode, moves, story, writer
 from waggle_tasks.experiments.results import palette
 from waggle_tasks.experiments.video import (
   encoders,
@@ -24,9 +24,9 @@ from waggle_tasks.experiments.video import (
   lens,
   moment,
   page,
-  panel,
 )
-from waggle_tasks.protocol import frame, payload
+from waggle_tasks.experiments.video import strip as strip_lib
+from waggle_tasks.protocol import agreement, frame, payload
 from waggle_tasks.protocol.symbols import Symbol
 
 
@@ -130,7 +130,11 @@ def test_symbols_and_track_appear_as_they_are_read(recorded: object) -> None:
   foot = plan.foot(eye).slices
   assert all(colour_share(p[foot], palette.BLUE) < 0.001 for p in before)
   assert all(colour_share(p[foot], palette.BLUE) > 0.03 for p in after)
-  sent = story.sent(recorded.scene.performance, recorded.scene.episode_s)[0]
+  sent = moves.sent(
+    recorded.scene.performance,
+    recorded.scene.agreement,
+    recorded.scene.episode_s,
+  )[0]
   dancing = [p for t, p in pictures if sent.begin_s + 1 < t < sent.end_s]
   trails = [colour_share(p[eye.slices], palette.YELLOW) for p in dancing]
   assert max(trails) > 0.0004
@@ -322,13 +326,15 @@ def test_the_terminal_stays_clean(
 def strip_of(*events: object) -> np.ndarray:
   """The strip of events at the end of a broadcast, (H, W, 3)."""
   plan = layout.plan(1)
-  strip = panel.Strip(plan, ['observer_1'], (), 104.6)
+  strip = strip_lib.Strip(
+    plan, ['observer_1'], (), agreement.Agreement(), 104.6
+  )
   sight = moment.View(
     'observer_1', np.zeros((2, 2, 3), np.uint8), None, np.empty((0, 2)),
     story.Reading(), events,
   )  # fmt: skip
   canvas = np.zeros((plan.height, plan.width, 3), np.uint8)
-  strip.draw(canvas, moment.Instant(0.0, Symbol.NULL, (sight,), {}, {}))
+  strip.draw(canvas, moment.Instant(0.0, None, (sight,), {}, {}))
   return canvas[plan.strip.slices]
 
 

@@ -104,6 +104,63 @@ def test_a_scheme_that_cannot_be_is_refused(text: str, said: str) -> None:
 # Cases.
 
 
+@pytest.mark.parametrize('count', [1, 64, 100])
+def test_bits_of_any_number_are_drawn_for_each_message(count: int) -> None:
+  cases, _ = link_cases.cases(
+    plan('swift', broadcasts=5, bits=f'random:{count}')
+  )
+  sent = [case.scene.bits for case in cases]
+  assert {len(bits) for bits in sent} == {count}
+  assert len({*sent}) > 1
+  again, _ = link_cases.cases(
+    plan('swift', broadcasts=5, bits=f'random:{count}')
+  )
+  assert [case.scene for case in again] == [case.scene for case in cases]
+
+
+def test_bits_that_are_given_are_those_of_every_message() -> None:
+  cases, refused = link_cases.cases(plan('paper,swift', bits='0110'))
+  assert [case.scene.bits for case in cases] == ['0110']
+  assert 'says one payload once' in refused[0]
+
+
+@pytest.mark.parametrize(
+  ('bits', 'said'),
+  [
+    ('random', "'random:N' for N bits that are drawn: got 'random'"),
+    ('random:x', "got 'random:x'"),
+    ('random:0', '`bits` must be between 1 and 2048: got 0'),
+    ('random:2049', '`bits` must be between 1 and 2048: got 2049'),
+    ('012', "got '012'"),
+  ],
+)
+def test_bits_that_cannot_be_sent_are_refused(bits: str, said: str) -> None:
+  with pytest.raises(link_schemes.SchemeError, match=said):
+    link_cases.cases(plan('swift', bits=bits))
+
+
+def test_goodput_of_data_counts_their_bits_and_those_that_are_right(
+  make: object,
+) -> None:
+  def fate(case: sweep_cases.Sample, number: int) -> dict[str, object]:
+    del number
+    bits = case.scene.bits
+    read = [bits, f'{bits[:-1]}{1 - int(bits[-1])}', None][case.repeat]
+    return {'decoded': read, 'start_s': None}
+
+  rows = flown(make, fate, plan('swift', broadcasts=3, bits='random:64'))
+  got = goodput.tally(rows)
+  assert (got.bits, got.delivered, got.wrong) == (64, 1, 1)
+  assert (got.right_bits, got.read_bits) == (127, 128)
+  assert got.goodput == pytest.approx(64 / 3 / got.seconds)
+  said = link_tables.report(rows, 285.0)
+  assert ' bits right ' in said
+  assert ' 99.22% ' in said
+  assert 'bits right' not in link_tables.report(
+    flown(make, not_delivered(), plan('swift')), 285.0
+  )
+
+
 def test_every_broadcast_is_its_own_whatever_else_is_asked_for() -> None:
   conditions = [*link_conditions.CONDITIONS]
   cases, refused = link_cases.cases(

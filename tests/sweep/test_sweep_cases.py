@@ -6,6 +6,7 @@ import types
 import pytest
 
 from waggle_tasks import errors
+from waggle_tasks.experiments.record import scenario_fields
 from waggle_tasks.experiments.studies import sweep_cases
 
 Make = types.SimpleNamespace
@@ -146,3 +147,11 @@ def test_a_number_of_repeats_that_makes_no_sense_is_refused(
 ) -> None:
   with pytest.raises(sweep_cases.SweepError, match='`repeats` must be between'):
     make.cases(repeats=repeats)
+
+
+def test_bits_are_drawn_like_payloads() -> None:
+  base = scenario_fields.defaults() | {'language': 'swift', 'bits': 'random:9'}
+  cases = sweep_cases.cases({'distance_m': [1.0, 1.3]}, base, 2)
+  sent = {case.values['bits'] for case in cases}
+  assert {len(bits) for bits in sent} == {9}
+  assert len(sent) > 1

@@ -1,6 +1,6 @@
 """Languages by name: how bits become motions, and what confirms them."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 import dataclasses
 
 from waggle_tasks import errors
@@ -8,6 +8,7 @@ from waggle_tasks.protocol import (
   alphabets,
   checks,
   gestures,
+  limits,
   schedule,
   sights,
   timing,
@@ -98,14 +99,26 @@ class Language:
     return alphabets.lay_out(self.alphabet, tokens, self.initial_hover_s)
 
 
-def _brisk(
-  arm_m: float, start_m: float, end_m: float, rest_s: float, slower: float = 1.0
+def _gestures(
+  arm_m: float,
+  start_m: float,
+  end_m: float,
+  rest_s: float,
+  leg_s: Callable[[float, float], float],
 ) -> Language:
-  """The paper's four gestures, as small and quick as they can be flown."""
+  """The paper's four gestures.
+
+  Args:
+    arm_m: Half the width, and the height, of a V.
+    start_m: How far START climbs.
+    end_m: Half the width of END.
+    rest_s: The rest after each gesture but END.
+    leg_s: The time of a leg that leads so far sideways, and so far up.
+  """
   hover = (0.0, 0.0)
-  bit_s = slower * 4 * levels_lib.least_s(arm_m)
-  start_s = slower * 2 * levels_lib.least_s(start_m)
-  end_s = slower * 3 * levels_lib.least_s(2 * end_m)
+  bit_s = 4 * leg_s(arm_m, arm_m)
+  start_s = 2 * leg_s(0.0, start_m)
+  end_s = 3 * leg_s(2 * end_m, 0.0)  # All legs take the time of the longest.
   vee = (hover, (-arm_m, arm_m), hover, (arm_m, arm_m), hover)
   ways = {
     Symbol.START: ((hover, (0.0, start_m), hover), start_s),
@@ -120,6 +133,20 @@ def _brisk(
 
 
 LANGUAGES = {
-  'brisk': _brisk(0.04, 0.15, 0.08, 0.08),
+  'brisk': _gestures(
+    0.04,
+    0.15,
+    0.08,
+    0.08,
+    lambda right_m, up_m: levels_lib.least_s(max(right_m, up_m)),
+  ),
+  # What four rotors fly: they lean before they go sideways, and settle after.
+  'gentle': _gestures(
+    0.15,
+    0.3,
+    0.2,
+    0.4,
+    lambda right_m, up_m: limits.least_s(right_m, up_m, 'rotors'),
+  ),
   'swift': Language(levels_lib.quickest(8, 0.14), coding_lib.Coding(parity=2)),
 }

@@ -59,6 +59,10 @@ THRUST_N = (0.0128, 0.12)
 TILT_RAD = math.radians(20.0)
 # How far apart two paths may end and begin, and how fast.
 _JUMP_M, _REST_MPS = 0.005, 0.025
+# The most of minimum jerk over 1 m in 1 s: of its speed, its acceleration and
+# the change of that.
+_MOST_1, _MOST_2, _MOST_3 = 15 / 8, 10 / math.sqrt(3), 60.0
+_SPARE = 1.01  # Of a shortest time.
 # Peaks are sought this finely, and in no fewer moments.
 _STEP_S, _MOMENTS = 0.01, 400
 
@@ -148,6 +152,26 @@ def _check_path(name: str, path: schedule_lib.Path, limits: Limits) -> None:
         f' has: got {asked:.2f} {unit} in {path.duration_s:g} s; in'
         f' {path.duration_s * slower + 0.005:.2f} s it can be flown'
       )
+
+
+def least_s(right_m: float, up_m: float, dynamics: str) -> float:
+  """The shortest time for a straight leg of minimum jerk, to 0.01 s.
+
+  A little is left to spare.
+
+  Args:
+    right_m: How far it leads sideways.
+    up_m: How far it leads up, or down again.
+    dynamics: One of `DYNAMICS`.
+  """
+  most = LIMITS[dynamics]
+  times_s = (
+    math.sqrt(_MOST_2 * right_m / most.sideways_mps2),
+    math.sqrt(_MOST_2 * up_m / min(most.up_mps2, most.down_mps2)),
+    math.cbrt(_MOST_3 * right_m / most.sideways_mps3),
+    _MOST_1 * max(right_m, up_m) / most.speed_mps,
+  )
+  return math.ceil(100 * _SPARE * max(times_s)) / 100
 
 
 @dataclasses.dataclass(frozen=True)
