@@ -17,7 +17,10 @@ def of(
   limits, lost = config.reading, config.tracking.lost_share
   alphabet = agreement.spoken.alphabet
   by_levels = isinstance(alphabet, levels.Levels)
-  rest = f', within {1e3 * limits.max_rest_m:g} mm of the hover point'
+  rest = (
+    f', within {limits.max_rest:.0%} of the way from the hover point to the'
+    ' nearest level'
+  )
   view = f'from up to {limits.max_angle_deg:g} degrees to either side'
   return description.Description(
     support=description.Measure('support', 'pixels'),

@@ -10,13 +10,16 @@ import numpy as np
 
 from waggle_tasks.agents import (
   absolute,
+  description,
   group,
   history,
   inputs,
   joint,
   joint_config,
+  joint_description,
   klt,
   lock,
+  reading,
   receiver,
   shapes,
   slots,
@@ -39,9 +42,9 @@ class _Read:
   """What came of a frame: its bits, or a reason."""
 
   reason: str
-  bits: str | None = None
   word: tuple[int, ...] = ()
   clear: float = 0.0
+  bits: str | None = None
   angle_deg: float = 0.0
   distance_m: float = 0.0
 
@@ -110,6 +113,17 @@ class JointReceiver:
     self._forget()
     self.track: klt.Track | None = None
     self.segment: None = None
+
+  @classmethod
+  def describe(
+    cls,
+    agreement: agreement_lib.Agreement,
+    config: joint_config.Config,
+    width_px: float | None = None,
+  ) -> description.Description:
+    """See `receivers.describe`."""
+    del width_px  # Nothing is told by the target's width.
+    return joint_description.of(agreement, config)
 
   def _forget(self) -> None:
     """Begins anew, with another target or another place of it."""
@@ -220,7 +234,7 @@ class JointReceiver:
         return [*events, *self._accept(read, read.bits, time_s)]
       self._open.remove(each)
       if each.last:
-        events.append(_rejected(read.reason, time_s))
+        events.append(_rejected(read, time_s))
       else:
         last = _Open(each.start, each.due_s + self._late_s, last=True)
         self._open.append(last)
@@ -248,39 +262,40 @@ class JointReceiver:
         break
       reader.again(word)
     found = reader.judged()
+    symbols = tuple(map(int, word))
+    if reason := self._doubt(found, clear):
+      return _Read(reason, symbols, clear)
+    reason, bits = self._agreement.coding.judge(
+      symbols, self._agreement.frame_bits, self._alphabet.size
+    )
+    angle_deg = math.degrees(found.angle_rad)
+    distance_m = self._focal_px / found.scale_px
+    return _Read(reason, symbols, clear, bits, angle_deg, distance_m)
+
+  def _doubt(self, found: reading.Reading, clear: float) -> str:
+    """Why a word that was read is none; empty if it may be one."""
+    limits = self._limits
     if found.end > limits.max_end:
-      return _Read(
+      return (
         f'what came for END was none: error {found.end:.2f} > {limits.max_end}'
       )
     if not found.rest_seen:
-      return _Read('the rest after END was not seen')
+      return 'the rest after END was not seen'
     if found.rest > limits.max_rest:
-      return _Read(
+      return (
         f'after END it rested at {found.rest:.0%} of the way to the next level'
         f' > {limits.max_rest:.0%}'
       )
     if found.astray > limits.max_astray:
-      return _Read(
-        f'{found.astray:.0%} of what was seen is where no symbol is flown'
-      )
+      return f'{found.astray:.0%} of what was seen is where no symbol is flown'
     if found.misfit > limits.max_misfit:
-      return _Read(
+      return (
         f'what came for symbols were none: error {found.misfit:.2f} >'
         f' {limits.max_misfit}'
       )
     if clear < limits.min_clear:
-      return _Read(
-        f'two words are as likely: clear {clear:.2f} < {limits.min_clear}'
-      )
-    symbols = tuple(map(int, word))
-    reason, bits = self._agreement.coding.judge(
-      symbols, self._agreement.frame_bits, self._alphabet.size
-    )
-    if bits is None:
-      return _Read(reason)
-    angle_deg = math.degrees(found.angle_rad)
-    distance_m = self._focal_px / found.scale_px
-    return _Read('', bits, symbols, clear, angle_deg, distance_m)
+      return f'two words are as likely: clear {clear:.2f} < {limits.min_clear}'
+    return ''
 
   def _accept(
     self, read: _Read, bits: str, time_s: float
@@ -305,7 +320,8 @@ class JointReceiver:
     return None if whole is None else payload.Data(whole)
 
 
-def _rejected(reason: str, time_s: float) -> receiver.Event:
+def _rejected(read: _Read, time_s: float) -> receiver.Event:
   return receiver.Event(
-    time_s, Symbol.UNKNOWN, frame.State.LEAD_NULL, rejection=reason
-  )
+    time_s, Symbol.UNKNOWN, frame.State.LEAD_NULL, rejection=read.reason,
+    word=read.word or None, clear=read.clear if read.word else None,
+  )  # fmt: skip

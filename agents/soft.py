@@ -53,7 +53,7 @@ def decide(
       words = _words(block.data, parity, size)
       part, part_clear = _nearest(reader, gains, places, words)
     word[places], clear = part, min(clear, part_clear)
-  return word, float(clear)
+  return word, float(min(clear, 1.0))
 
 
 def _gains(reader: joint.Reader, size: int) -> np.ndarray:

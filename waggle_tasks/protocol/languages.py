@@ -148,5 +148,7 @@ LANGUAGES = {
     0.4,
     lambda right_m, up_m: limits.least_s(right_m, up_m, 'rotors'),
   ),
+  # For observers within 2 m.
+  'rapid': Language(levels_lib.quickest(8, 0.085), coding_lib.Coding(parity=2)),
   'swift': Language(levels_lib.quickest(8, 0.14), coding_lib.Coding(parity=2)),
 }
