@@ -1,0 +1,106 @@
+"""Which way to go: reciprocal velocity obstacles, with passing on the right.
+
+Each vehicle tries velocities, and takes the one that is nearest to what it
+wants and leads to no early meeting (van den Berg, Lin and Manocha, Reciprocal
+velocity obstacles for real-time multi-agent navigation, ICRA 2008,
+doi:10.1109/ROBOT.2008.4543489, equation 8). A neighbour that yields is taken to
+do half of what is needed. Ways to the left cost more, so that two that meet
+head on both go right, and many turn about each other.
+
+Rows are vehicles, each with what it alone knows; see `cells`.
+"""
+
+import math
+
+import numpy as np
+
+from waggle_tasks.tasks import cells
+
+HORIZON_S = 3.0  # Later meetings are not minded yet.
+_SOONEST_S = 0.05
+_MEETING_S = 1.0  # How much a meeting costs, times its time, in speeds.
+_LEFT = 0.15  # How much going left costs, of what full speed does.
+_STILL = 0.5  # What being slower than wanted costs, so that nobody waits for ever.
+_CHANGE = 0.1  # What changing the velocity costs.
+_ANGLES = np.radians(np.arange(0, 360, 15))
+_SPEEDS = np.array([1.0, 0.6, 0.3])
+
+
+def choose(
+  wanted_mps: np.ndarray,  # (N, 3)
+  velocities_mps: np.ndarray,  # (N, 3)
+  apart_m: np.ndarray,  # (N, M, 3)
+  their_mps: np.ndarray,  # (N, M, 3)
+  yields: np.ndarray,  # (N, M)
+  spacings_m: np.ndarray,  # (N, M)
+  horizons_s: np.ndarray,  # (N, M)
+  speed_mps: float,
+) -> np.ndarray:  # (N, 3)
+  """The velocity that each vehicle should have next.
+
+  Args:
+    wanted_mps: What it would fly if it were alone.
+    velocities_mps: What it flies.
+    apart_m: Where each neighbour is, from it.
+    their_mps: How each neighbour flies.
+    yields: Whether a neighbour avoids as well.
+    spacing_m: How far it would stay away from them.
+    speed_mps: Its greatest speed.
+  """
+  tried = _candidates(wanted_mps, speed_mps)  # (N, C, 3)
+  shares = np.where(yields, 2.0, 1.0)[:, None, :, None]
+  own = velocities_mps[:, None, None]
+  closing = own + shares * (tried[:, :, None] - own) - their_mps[:, None]
+  times_s = meetings_s(apart_m[:, None], closing, spacings_m[:, None])  # (N, C, M)
+  urgent = 1 / np.maximum(times_s, _SOONEST_S) - 1 / horizons_s[:, None]
+  meeting = urgent.max(axis=2, initial=0.0)
+  straight = wanted_mps[:, None]
+  left = straight[..., 0] * tried[..., 1] - straight[..., 1] * tried[..., 0]
+  size = np.maximum(cells.length(straight) * cells.length(tried), 1e-9)
+  cost = (
+    cells.length(tried - straight) / speed_mps
+    + _STILL * np.maximum(cells.length(straight) - cells.length(tried), 0.0) / speed_mps
+    + _CHANGE * cells.length(tried - velocities_mps[:, None]) / speed_mps
+    + _LEFT * np.maximum(left / size, 0.0)
+    + _MEETING_S * meeting
+  )
+  best = cost.argmin(axis=1)
+  return tried[np.arange(len(tried)), best]
+
+
+def meetings_s(
+  apart_m: np.ndarray,  # (..., 3)
+  closing_mps: np.ndarray,  # (..., 3)
+  spacing_m: np.ndarray,
+) -> np.ndarray:
+  """When two come nearer than a spacing; infinite for never, 0 for already.
+
+  Whoever is nearer and does not come nearer still is not meeting anybody.
+  """
+  speeds = (closing_mps * closing_mps).sum(axis=-1)
+  along = (apart_m * closing_mps).sum(axis=-1)
+  beyond = (apart_m * apart_m).sum(axis=-1) - spacing_m**2
+  inner = along * along - speeds * beyond
+  meets = (inner > 0) & (along > 0)
+  root = np.sqrt(np.where(meets, inner, 0.0))
+  times_s = (along - root) / np.maximum(speeds, 1e-12)
+  return np.where(meets, np.maximum(times_s, 0.0), np.inf)
+
+
+def _candidates(wanted_mps: np.ndarray, speed_mps: float) -> np.ndarray:
+  """Velocities (N, C, 3): the wanted one, rest, and others all around it."""
+  heading = np.arctan2(wanted_mps[:, 1], wanted_mps[:, 0])
+  angles = heading[:, None, None] + _ANGLES[:, None]  # (N, A, 1)
+  speeds = speed_mps * _SPEEDS * np.ones_like(angles)
+  around = np.stack(
+    [
+      speeds * np.cos(angles), speeds * np.sin(angles),
+      np.broadcast_to(wanted_mps[:, None, 2:], speeds.shape),
+    ],
+    axis=-1,
+  ).reshape(len(wanted_mps), -1, 3)  # fmt: skip
+  rest = np.zeros((len(wanted_mps), 1, 3))
+  return np.concatenate([wanted_mps[:, None], rest, around], axis=1)
+
+
+assert math
