@@ -3,6 +3,8 @@
 import dataclasses
 import math
 
+import numpy as np
+
 from waggle_tasks import appearance as appearance_lib
 from waggle_tasks import errors
 from waggle_tasks import sensor as sensor_lib
@@ -10,19 +12,30 @@ from waggle_tasks.arenas import bounds, layouts
 from waggle_tasks.entities import optics
 from waggle_tasks.protocol import agreement as agreement_lib
 from waggle_tasks.protocol import camera as camera_lib
-from waggle_tasks.protocol import checks, clock, controls, gestures, timing
+from waggle_tasks.protocol import (
+  checks,
+  clock,
+  controls,
+  flight,
+  gestures,
+  timing,
+)
 from waggle_tasks.protocol import limits as limits_lib
 from waggle_tasks.protocol import payload as payload_lib
 from waggle_tasks.protocol import performance as performance_lib
 from waggle_tasks.tasks import air as air_lib
 from waggle_tasks.tasks import drift as drift_lib
-from waggle_tasks.tasks import estimators, safety
+from waggle_tasks.tasks import estimators
+from waggle_tasks.tasks import safety as safety_lib
 from waggle_tasks.tasks import surroundings as surroundings_lib
 
 CONTROLS = controls.CONTROLS
 LAYOUTS = ('arc', 'line')
 # After the last gesture: the 3 s null, the flight, the hold, and time to spare.
 AFTERMATH_S = 12.0
+# What more those who avoid each other may take.
+AVOIDING_S = 18.0
+_DETOUR_M = 0.3  # How far those who avoid come from their ways, about.
 NO_SEND_S = 10.0  # Paper, section 'Controls and supplemental suite'.
 INTERRUPTED_S = 60.0  # The same.
 MAX_OBSERVERS = 64
@@ -59,7 +72,8 @@ class Scenario:
       'black_input'.
     stop_s: When transmission stops, in s, if `control` is 'interrupted'.
     duration_s: How long the episode lasts at most, in s; unset, 10 s without
-      sending, 60 s when interrupted, else 12 s after the dance.
+      sending, 60 s when interrupted, else 12 s after the dance, 30 s where
+      vehicles avoid each other.
     codebook: The agreed gestures.
     pauses: The agreed pauses.
     tolerance: How far from its time a motion may be seen.
@@ -74,6 +88,9 @@ class Scenario:
       `estimators.ESTIMATORS`: with none of them they know the truth, with
       another they wander by its errors.
     drift: How far vehicles wander from where they should be.
+    safety: What is done about flights that would meet, one of
+      `safety_lib.SAFETIES`: they are refused, as in the paper, or vehicles avoid
+      each other.
     sensor: What spoils the observers' images.
     rate_hz: How many images and references there are in a second: 250 over a
       whole number, 10 to 125.
@@ -112,6 +129,7 @@ class Scenario:
   air: air_lib.Air = air_lib.Air()
   estimator: str = 'none'
   drift: drift_lib.Drift = drift_lib.Drift()
+  safety: str = 'refuse'
   sensor: sensor_lib.Sensor = sensor_lib.Sensor()
   rate_hz: float = agreement_lib.Agreement.rate_hz
   hover_height_m: float = agreement_lib.Agreement.hover_height_m
@@ -134,6 +152,7 @@ class Scenario:
     checks.choice(
       'estimator', self.estimator, estimators.ESTIMATORS, ScenarioError
     )
+    checks.choice('safety', self.safety, safety_lib.SAFETIES, ScenarioError)
     self._check_dynamics()
     checks.choice('camera', self.camera, optics.CAMERAS, ScenarioError)
     counts = {
@@ -167,7 +186,8 @@ class Scenario:
     limits_lib.check_codebook(self.codebook, limits_lib.LIMITS[self.dynamics])
     self._check_height()
     payload_lib.Payload.from_bits(self.payload, self.units)
-    self.surroundings.check(self.poses(), self.units.reach_m)
+    self.surroundings.check(self.poses(), self._reach_m())
+    self._check_slots()
 
   @property
   def message(self) -> payload_lib.Payload:
@@ -220,7 +240,8 @@ class Scenario:
       return NO_SEND_S
     if self.control == 'interrupted':
       return INTERRUPTED_S
-    return self.performance.schedule.end_s + AFTERMATH_S
+    more_s = AVOIDING_S if self.safety == 'avoid' else 0.0
+    return self.performance.schedule.end_s + AFTERMATH_S + more_s
 
   def poses(self) -> dict[str, layouts.Pose]:
     """Where each vehicle starts, before jitter, by its name.
@@ -244,9 +265,56 @@ class Scenario:
     # Two neighbours can come closer by the jitter of both, along x and y, and
     # by the drift and the errors of both.
     nearer_m = 2 * math.hypot(self.jitter_m, self.jitter_m)
-    nearer_m += self.drift.near_m + estimators.near_m(self.estimator)
-    layouts.check_spacing(poses, safety.MINIMUM_SPACING_M + nearer_m)
+    nearer_m += self.wander_m
+    layouts.check_spacing(poses, safety_lib.MINIMUM_SPACING_M + nearer_m)
     return poses
+
+  @property
+  def wander_m(self) -> float:
+    """How much nearer hover and errors bring two vehicles."""
+    return self.drift.near_m + estimators.near_m(self.estimator)
+
+  @property
+  def kept_m(self) -> float:
+    """How far apart vehicles that avoid are kept."""
+    return safety_lib.kept_m(self.wander_m)
+
+  def _reach_m(self) -> float:
+    """How far from its place a message can lead an observer."""
+    reach_m = self.units.reach_m
+    if self.units.meaning == 'place':
+      away_m = [math.hypot(*p.position_m[:2]) for p in self.poses().values()]
+      reach_m += self.units.slot_m + max(away_m)
+    return reach_m + (_DETOUR_M if self.safety == 'avoid' else 0.0)
+
+  def _check_slots(self) -> None:
+    """Refuses slots that are too near to each other."""
+    if self.units.meaning != 'place':
+      return
+    slots = {
+      name: layouts.Pose(
+        tuple(
+          flight.goal_m(
+            np.array(pose.position_m),
+            self.message.displacement_m(self.units),
+            self.agreement,
+          )
+        ),
+        pose.yaw_rad,
+      )
+      for name, pose in self.poses().items()
+      if name != 'performer'
+    }
+    # A slot turns by twice the angle by which jitter moves its vehicle.
+    try:
+      layouts.check_spacing(slots, self.kept_m)
+    except layouts.LayoutError as error:
+      raise ScenarioError(
+        f'`slot_m` must be such that slots are {self.kept_m:.3f} m apart, wider'
+        f' or for fewer observers: got {self.units.slot_m!r} ({error})'
+      ) from None
+    for name, slot in slots.items():
+      bounds.check_inside(name, slot)
 
   def _check_dynamics(self) -> None:
     """Refuses what ideal forces, which are told the truth, do not feel."""

@@ -1,11 +1,12 @@
 """The observers' commands: who asked, who may fly, and what became of it."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
 from waggle_tasks.protocol import agreement as agreement_lib
 from waggle_tasks.protocol import flight, reference
+from waggle_tasks.tasks import convoy as convoy_lib
 from waggle_tasks.tasks import progress, safety
 
 
@@ -18,6 +19,8 @@ class Flights:
     displacement_m: np.ndarray | None,
     minimum_spacing_m: float,
     agreement: agreement_lib.Agreement,
+    avoids: convoy_lib.Convoy | None = None,
+    settle: Callable[[np.ndarray, np.ndarray], np.ndarray] | None = None,
   ) -> None:
     """Lets every observer wait at its place.
 
@@ -26,8 +29,14 @@ class Flights:
       displacement_m: (3,) what is commanded to all, or None for nothing.
       minimum_spacing_m: Smallest distance allowed between two vehicles.
       agreement: What both sides know: the rate and the height.
+      avoids: Those under way where vehicles avoid each other; None where
+        flights that are not safe are refused.
+      settle: With that, what makes of a goal and a begin, (3,) each, the place
+        that is flown to.
     """
     self._minimum_spacing_m = minimum_spacing_m
+    self._convoy, self._settle = avoids, settle
+    self._agreement, self._displacement_m = agreement, displacement_m
     self._gates: list[safety.Gate] = []
     self._progress: list[progress.Progress] = []
     self._requests: dict[str, flight.Flight] = {}
@@ -36,9 +45,7 @@ class Flights:
       self._gates.append(safety.Gate(name, hold))
       target_m = None
       if displacement_m is not None:
-        target_m = flight.goal_m(
-          home_m, displacement_m, agreement.hover_height_m
-        )
+        target_m = flight.goal_m(home_m, displacement_m, agreement)
       self._progress.append(progress.Progress(home_m, target_m, agreement))
 
   @property
@@ -63,6 +70,7 @@ class Flights:
     positions_m: Mapping[str, np.ndarray],
     offsets_m: Mapping[str, np.ndarray],
     time_s: float,
+    sights: Callable[[], Mapping[str, convoy_lib.Sight]] | None = None,
   ) -> dict[str, reference.Reference]:
     """The references that controllers get for those that observers ask for.
 
@@ -72,12 +80,20 @@ class Flights:
       offsets_m: By name, (3,) how far each is from its reference by drift, and
         by what it does not know.
       time_s: Simulation time.
+      sights: Where vehicles avoid each other, gives what each is told.
     """
     self._judge(wanted, positions_m, offsets_m, time_s)
-    return {
+    followed = {
       gate.name: gate.follow(each, time_s)
       for gate, each in zip(self._gates, wanted, strict=True)
     }
+    if self._convoy and sights:
+      for gate in self._gates:
+        if gate.refusal and gate.name in self._convoy.names:
+          self._convoy.halt(gate.name)
+      if self._convoy.names:
+        followed |= self._convoy.fly(followed, sights())
+    return followed
 
   def _judge(
     self,
@@ -104,10 +120,17 @@ class Flights:
       **plans,
       **self._requests,
     }
-    reasons = safety.refuse(due, others, positions_m, self._minimum_spacing_m)
+    reasons = {}
+    if self._convoy is None:
+      reasons = safety.refuse(due, others, positions_m, self._minimum_spacing_m)
     for gate, way in zip(self._gates, self._progress, strict=True):
       if gate.name in due:
-        gate.judge(self._requests.pop(gate.name), reasons.get(gate.name))
+        plan = self._requests.pop(gate.name)
+        gate.judge(plan, reasons.get(gate.name))
+        if self._convoy and self._settle:
+          self._convoy.begin(
+            gate.name, gate.hold_m, self._settle(plan.goal_m, gate.hold_m)
+          )
         # A displacement counts from where it was read, drift and all; its
         # height is the agreed one.
         way.shift(offsets_m[gate.name] * (1.0, 1.0, 0.0))
