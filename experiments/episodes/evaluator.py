@@ -119,6 +119,17 @@ def _judge_reading(
   )  # fmt: skip
 
 
+def _target_m(
+  scene: scenario.Scenario, begin_m: np.ndarray, performer_m: np.ndarray
+) -> np.ndarray:
+  """(3,) where what was sent leads a reader that is at (3,) `begin_m`."""
+  displacement_m = expected_displacement_m(scene)
+  goal_m = flight.goal_m(begin_m, displacement_m, scene.agreement)
+  if scene.safety == 'refuse':
+    return goal_m
+  return safety.settled_m(goal_m, begin_m, [performer_m], scene.kept_m)
+
+
 def _message(
   events: Sequence[episode.Event],
 ) -> tuple[receiver.Event | None, str | None]:
@@ -189,8 +200,10 @@ def _fly(
   frame_s = agreement.frame_s
   begin = int(np.searchsorted(times_s, message_s - frame_s / 2))
   # An observer flies from where it was, drift and all, to the agreed height.
-  target_m = rollout.positions_m[name][begin] + expected_displacement_m(scene)
-  target_m[2] = agreement.hover_height_m
+  target_m = _target_m(
+    scene, rollout.positions_m[name][begin],
+    rollout.positions_m['performer'][begin],
+  )  # fmt: skip
   error_m = np.linalg.norm(positions_m - target_m, axis=1)
   speed_mps = (
     np.linalg.norm(
@@ -211,8 +224,11 @@ def _fly(
   found: dict[str, Any] = {'error_m': last_m}
   if scene.estimator != 'none':
     believed_m = rollout.believed_m(name)
-    goal_m = believed_m[begin] + expected_displacement_m(scene)
-    goal_m[2] = agreement.hover_height_m
+    off_m = believed_m[begin] - positions_m[begin]
+    goal_m = _target_m(
+      scene, believed_m[begin],
+      rollout.positions_m['performer'][begin] + off_m,
+    )  # fmt: skip
     found['estimate_error_m'] = float(np.linalg.norm(believed_m[-1] - goal_m))
   if arrival is None:
     reason = f'arrival: never, {last_m * 1e3:.1f} mm away at the end'

@@ -23,7 +23,14 @@ def commanded(
     ):
       frame = int(np.abs(run.times_s - event.time_s).argmin())
       begin_m = run.positions_m[name][frame]
-      return begin_m, np.array(event.target_m)
+      target_m = np.array(event.target_m)
+      scene = run.config.scenario
+      if scene.safety == 'avoid':
+        performer_m = run.positions_m['performer'][frame]
+        target_m = safety.settled_m(
+          target_m, begin_m, [performer_m], scene.kept_m
+        )
+      return begin_m, target_m
   return None
 
 
@@ -58,6 +65,14 @@ def _vector(way_m: np.ndarray) -> str:
   return ', '.join(f'{value:.3f}' for value in way_m)
 
 
+def _rule(run: archive.Run) -> str:
+  """What is done about vehicles that would meet."""
+  least_m = safety.MINIMUM_SPACING_M
+  if run.config.scenario.safety == 'avoid':
+    return f'Vehicles avoid each other, to stay {least_m:g} m apart'
+  return f'A flight that would pass under {least_m:g} m is refused'
+
+
 def distances(run: archive.Run) -> markup.Markup:
   """The smallest distance of each pair of vehicles, the nearest pairs first."""
   pairs = []
@@ -75,7 +90,6 @@ def distances(run: archive.Run) -> markup.Markup:
   return markup.table(
     ('vehicles', 'smallest distance, m', 'at, s'),
     rows,
-    f'A flight that would pass under {safety.MINIMUM_SPACING_M:g} m is refused'
-    + (note if left_out else '')
+    _rule(run) + (note if left_out else '')
     + '.',
   )

@@ -73,6 +73,10 @@ class Convoy:
       way.undisturbed = False
       way.goal_m = way.place_m.copy()
 
+  def place_m(self, name: str) -> np.ndarray:
+    """(3,) where a vehicle should be now."""
+    return self._ways[name].place_m
+
   def arrived(self, name: str) -> bool:
     """Whether a vehicle has come to rest at its goal."""
     return self._ways[name].arrived
@@ -102,7 +106,9 @@ class Convoy:
       followed = {}
     for name, way in self._ways.items():
       if name not in followed:
-        followed[name] = reference.Reference.hover(way.goal_m)
+        off_m = np.linalg.norm(wanted[name].position_m - way.goal_m)
+        hover = reference.Reference.hover(way.goal_m)
+        followed[name] = wanted[name] if off_m < _THERE_M else hover
     return followed
 
   def _known(
@@ -125,7 +131,7 @@ class Convoy:
         each.velocity_mps + ahead if way.undisturbed else np.full(3, np.nan)
       )
     ways = [self._ways[name] for name in flying]
-    shape = len(flying), -1, 3
+    shape = len(flying), len(yields[0]), 3
     return avoidance.Known(
       np.stack([way.place_m for way in ways]),
       np.stack([way.velocity_mps for way in ways]),

@@ -131,9 +131,22 @@ class Flights:
           self._convoy.begin(
             gate.name, gate.hold_m, self._settle(plan.goal_m, gate.hold_m)
           )
-        # A displacement counts from where it was read, drift and all; its
-        # height is the agreed one.
-        way.shift(offsets_m[gate.name] * (1.0, 1.0, 0.0))
+        self._aim(way, positions_m[gate.name], offsets_m[gate.name])
+
+  def _aim(
+    self, way: progress.Progress, position_m: np.ndarray, offset_m: np.ndarray
+  ) -> None:
+    """Counts a target from where a message was truly read, (3,)."""
+    if way.target_m is None or self._displacement_m is None:
+      return
+    if self._agreement.units.meaning == 'place':
+      way.target_m = flight.goal_m(
+        position_m, self._displacement_m, self._agreement
+      )
+    else:  # Drift and all; its height is the agreed one.
+      way.shift(offset_m * (1.0, 1.0, 0.0))
+    if self._settle and self._convoy:
+      way.target_m = self._settle(way.target_m, position_m)
 
   def update(
     self,

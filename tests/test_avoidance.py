@@ -1,0 +1,394 @@
+"""Vehicles avoid each other by themselves, and all of them arrive."""
+
+from collections.abc import Callable, Sequence
+import dataclasses
+import itertools
+import math
+
+from dm_control import composer
+import numpy as np
+import pytest
+
+from waggle_tasks import scenario
+from waggle_tasks.arenas import layouts
+from waggle_tasks.protocol import (
+  agreement,
+  flight,
+  payload,
+  performance,
+  reference,
+)
+from waggle_tasks.tasks import avoidance, cells, detours, safety
+
+Load = Callable[..., composer.Environment]
+LAW = avoidance.Law(0.18)
+FRAME_S = 0.04
+
+
+def level(places: Sequence[Sequence[float]]) -> np.ndarray:  # (N, 3)
+  flat = np.reshape(np.array(places, float), (-1, 2))
+  return np.column_stack([flat, np.full(len(flat), 1.3)])
+
+
+@dataclasses.dataclass
+class Flown:
+  """How N vehicles flew."""
+
+  places_m: np.ndarray  # (T, N, 3)
+  velocities_mps: np.ndarray
+  stayers_m: np.ndarray
+
+  def least_m(self) -> float:
+    """The least distance of two, those who stay included."""
+    count = len(self.stayers_m)
+    shape = len(self.places_m), count, 3
+    stay = np.broadcast_to(self.stayers_m, shape)
+    every = np.concatenate([self.places_m, stay], axis=1)
+    pairs = itertools.combinations(range(self.places_m.shape[1] + count), 2)
+    return min(
+      np.linalg.norm(every[:, a] - every[:, b], axis=1).min()
+      for a, b in pairs
+      if a < self.places_m.shape[1]
+    )
+
+
+def fly(
+  begins_m: np.ndarray,
+  goals_m: np.ndarray,
+  stayers_m: np.ndarray = np.zeros((0, 3)),
+  limit_s: float = 30.0,
+) -> Flown:
+  """Flies points that do exactly what the law says, until all are there."""
+  count, places, speeds = len(begins_m), begins_m, np.zeros_like(begins_m)
+  others = [[j for j in range(count) if j != i] for i in range(count)]
+  index = np.array(others, int).reshape(count, count - 1)
+  stay = np.broadcast_to(stayers_m, (count, *stayers_m.shape))
+  yields = np.ones((count, count - 1 + len(stayers_m)), bool)
+  yields[:, count - 1 :] = False
+  all_places, all_speeds = [places], [speeds]
+  for _ in range(round(limit_s / FRAME_S)):
+    known = avoidance.Known(
+      places,
+      speeds,
+      goals_m,
+      np.concatenate([places[index], stay], axis=1),
+      np.concatenate([speeds[index], 0 * stay], axis=1),
+      yields,
+    )
+    after = avoidance.step(LAW, known, FRAME_S)
+    places, speeds = places + (speeds + after) * FRAME_S / 2, after
+    all_places.append(places)
+    all_speeds.append(speeds)
+    if np.linalg.norm(places - goals_m, axis=1).max() < 2e-3:
+      break
+  return Flown(np.array(all_places), np.array(all_speeds), stayers_m)
+
+
+def circle(count: int, radius_m: float) -> np.ndarray:
+  angles = 2 * math.pi * np.arange(count) / count
+  return level(radius_m * np.stack([np.cos(angles), np.sin(angles)], axis=1))
+
+
+ANTIPODES = np.array([-1.0, -1.0, 1.0])
+ROW = level([(0.25 * k, 0.0) for k in range(-3, 4)])
+CUP = level([
+  (0.6 * math.sin(0.35 * k), 0.6 * math.cos(0.35 * k)) for k in range(-6, 7)
+])  # fmt: skip
+CASES = {
+  'head on': (level([(0, -1), (0, 1)]), level([(0, 1), (0, -1)]), level([])),
+  'crossing': (level([(0, -1), (-1, 0)]), level([(0, 1), (1, 0)]), level([])),
+  'through': (level([(0, -0.6)]), level([(0, 0.6)]), level([(0, 0)])),
+  'through a row': (level([(0, -1)]), level([(0, 1)]), ROW),
+  'out of a cup': (level([(0, 0)]), level([(0, 1.5)]), CUP),
+  'swap beside one that stays': (
+    level([(0, -0.5), (0, 0.5)]), level([(0, 0.5), (0, -0.5)]),
+    level([(0.2, 0)]),
+  ),
+  'five': (circle(5, 0.8), circle(5, 0.8) * ANTIPODES, level([])),
+  'twenty': (circle(20, 1.2), circle(20, 1.2) * ANTIPODES, level([])),
+  'twenty, close': (circle(20, 0.8), circle(20, 0.8) * ANTIPODES, level([])),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize('name', CASES)
+def test_all_arrive_and_nobody_comes_too_near(name: str) -> None:
+  begins_m, goals_m, stayers_m = CASES[name]
+  flown = fly(begins_m, goals_m, stayers_m)
+  np.testing.assert_allclose(flown.places_m[-1], goals_m, atol=2e-3)
+  assert flown.least_m() > LAW.spacing_m - 1e-3
+  assert cells.length(flown.velocities_mps).max() < LAW.speed_mps + 1e-6
+  change = cells.length(np.diff(flown.velocities_mps, axis=0)) / FRAME_S
+  assert change.max() < LAW.acceleration_mps2 + 1e-6
+
+
+def test_two_that_meet_pass_on_the_right() -> None:
+  begins_m, goals_m, _ = CASES['head on']
+  flown = fly(begins_m, goals_m)
+  middle = np.abs(flown.places_m[:, 0, 1]).argmin()
+  assert flown.places_m[middle, 0, 0] > 0.05  # It flies to +y: right is +x.
+  assert flown.places_m[middle, 1, 0] < -0.05
+
+
+def test_a_goal_that_is_anothers_place_is_come_near_to_and_held() -> None:
+  flown = fly(level([(0, -1)]), level([(0, 0)]), level([(0, 0)]), 8.0)
+  at_m = flown.places_m[-1, 0]
+  assert np.linalg.norm(at_m - (0, 0, 1.3)) == pytest.approx(0.18, abs=0.01)
+  np.testing.assert_allclose(flown.velocities_mps[-1], 0, atol=1e-3)
+
+
+def test_a_vehicle_keeps_to_the_room() -> None:
+  flown = fly(level([(8.0, 0)]), level([(9.5, 0)]), limit_s=6.0)
+  assert flown.places_m[:, 0, 0].max() <= LAW.high_m[0] + 1e-3
+
+
+def test_others_at_another_height_are_no_obstacle() -> None:
+  above = np.array([[0.0, 0.0, 1.8]])
+  flown = fly(level([(0, -0.6)]), level([(0, 0.6)]), above)
+  np.testing.assert_allclose(flown.places_m[:, 0, 0], 0, atol=1e-9)
+
+
+@pytest.mark.parametrize('gap_m', [0.0, 0.05, 0.1])
+def test_those_too_near_already_part(gap_m: float) -> None:
+  begins_m = level([(0, 0), (gap_m, 0)])
+  flown = fly(begins_m, level([(-1, 0), (1, 0)]))
+  np.testing.assert_allclose(np.abs(flown.places_m[-1, :, 0]), 1, atol=2e-3)
+
+
+def test_the_same_is_flown_again() -> None:
+  begins_m, goals_m, _ = CASES['five']
+  one, other = (fly(begins_m, goals_m).places_m for _ in range(2))
+  np.testing.assert_array_equal(one, other)
+
+
+@pytest.mark.parametrize('bad', [math.nan, math.inf])
+@pytest.mark.parametrize(
+  'field', ['places_m', 'velocities_mps', 'goals_m', 'others_m', 'others_mps']
+)
+def test_what_is_no_place_is_refused(field: str, bad: float) -> None:
+  values = {
+    'places_m': np.zeros((1, 3)), 'velocities_mps': np.zeros((1, 3)),
+    'goals_m': np.zeros((1, 3)), 'others_m': np.zeros((1, 2, 3)),
+    'others_mps': np.zeros((1, 2, 3)),
+  }  # fmt: skip
+  values[field] = values[field] + bad
+  with pytest.raises(avoidance.AvoidanceError, match=f'`{field}` must be'):
+    avoidance.Known(**values, yields=np.zeros((1, 2), bool))
+
+
+def test_a_free_place_is_the_nearest_one() -> None:
+  goal_m, begin_m = level([(0, 0), (0, -1)])
+  found = detours.free_m(goal_m, begin_m, level([(0, 0)]), 0.2)
+  np.testing.assert_allclose(found, (0, -0.2, 1.3), atol=1e-9)
+  found = detours.free_m(goal_m, begin_m, level([(0, 0.1)]), 0.2)
+  np.testing.assert_allclose(found, (0, -0.1, 1.3), atol=1e-9)
+  assert detours.free_m(goal_m, begin_m, level([(1, 0)]), 0.2) is goal_m
+
+
+# In the task, with agents that know the message.
+
+
+class Faked:
+  """Flies the payload of a scenario from a time on, as a reader would."""
+
+  def __init__(self, scene: scenario.Scenario, begin_s: float = 0.4) -> None:
+    self._scene, self._begin_s = scene, begin_s
+    self._flights: list[flight.Flight] = []
+
+  def __call__(self, observations: Sequence[dict]) -> list[np.ndarray]:
+    if not self._flights:
+      displacement_m = self._scene.message.displacement_m(self._scene.units)
+      self._flights = [
+        flight.Flight(
+          o['position_m'].copy(),
+          flight.goal_m(
+            o['position_m'], displacement_m, self._scene.agreement
+          ),
+          self._begin_s,
+        )
+        for o in observations
+      ]
+    time_s = float(observations[0]['time_s'])
+    out = []
+    for each in self._flights:
+      wanted = reference.Reference.hover(each.begin_m)
+      if time_s > self._begin_s - 1e-6:
+        motion = each.motion(time_s + FRAME_S / 2)
+        wanted = reference.Reference(*motion, 0.0, each.goal_m)
+      out.append(wanted.to_array())
+    return out
+
+
+@dataclasses.dataclass
+class Told:
+  """What came of an episode without a dance and without cameras."""
+
+  places_m: np.ndarray  # (T, V, 3)
+  rewards: list[float]
+  refusals: int
+  targets_m: list[np.ndarray]
+
+  def least_m(self) -> float:
+    pairs = itertools.combinations(range(self.places_m.shape[1]), 2)
+    return min(
+      np.linalg.norm(self.places_m[:, a] - self.places_m[:, b], axis=1).min()
+      for a, b in pairs
+    )
+
+
+@pytest.fixture
+def flown(
+  load: Load, monkeypatch: pytest.MonkeyPatch
+) -> Callable[..., Told]:
+  """Flies a scenario's message at once: its dance is taken as flown."""
+
+  def run(seconds: float = 25.0, **fields: object) -> Told:
+    scene = scenario.Scenario(duration_s=seconds, **fields)
+    silent = performance.Performance()
+    monkeypatch.setattr(scenario.Scenario, 'performance', silent)
+    environment = load(
+      'broadcast', cameras=False, duration_s=seconds, **fields
+    )
+    task, agent = environment.task, Faked(scene)
+    displacement_m = scene.message.displacement_m(scene.units)
+    timestep, places, rewards = environment.reset(), [], 0.0
+    for each, way in zip(
+      task._flights._gates, task._flights._progress, strict=True
+    ):
+      way.target_m = flight.goal_m(
+        each.hold_m, displacement_m, scene.agreement
+      )
+    task._flights._displacement_m = displacement_m
+    monkeypatch.setattr(type(task), 'sends_message', True)
+    while not timestep.last():
+      timestep = environment.step(agent(timestep.observation))
+      assert timestep.discount == 1
+      rewards = rewards + np.array(timestep.reward)
+      found = task.positions_m(environment.physics)
+      places.append([*found.values()])
+    targets = [way.target_m for way in task._flights._progress]
+    return Told(
+      np.array(places), list(rewards), len(task.refusals), targets
+    )
+
+  return run
+
+
+AT_PERFORMER = {'distance_m': 0.6, 'payload': '000011', 'observers': 1}
+
+
+def test_a_message_that_leads_through_the_performer_is_refused_as_ever(
+  flown: Callable[..., Told],
+) -> None:
+  told = flown(3.0, **AT_PERFORMER)
+  assert told.refusals == 1
+  np.testing.assert_allclose(told.places_m[-1, 1], (0, -0.6, 1.3), atol=1e-4)
+
+
+def test_or_leads_to_the_nearest_place_beside_it(
+  flown: Callable[..., Told],
+) -> None:
+  told = flown(**AT_PERFORMER, safety='avoid')
+  assert (told.refusals, told.rewards) == (0, [1.0])
+  np.testing.assert_allclose(told.places_m[-1, 1], (0, -0.2, 1.3), atol=2e-3)
+  assert told.least_m() > safety.MINIMUM_SPACING_M
+
+
+BEHIND = {
+  'distance_m': 0.3, 'payload': '000011', 'observers': 1, 'safety': 'avoid'
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(
+  'fields',
+  [
+    {},
+    {'dynamics': 'rotors'},
+    {'dynamics': 'rotors', 'estimator': 'lighthouse'},
+  ],
+  ids=['ideal', 'rotors', 'estimator'],
+)
+def test_a_message_through_the_performer_leads_round_it(
+  fields: dict[str, object], flown: Callable[..., Told]
+) -> None:
+  told = flown(**BEHIND, **fields)
+  assert told.refusals == 0
+  off_m = np.linalg.norm(told.places_m[-1, 1] - told.targets_m[0])
+  assert off_m < (0.03 if 'estimator' in fields else 5e-3)
+  assert told.least_m() > safety.MINIMUM_SPACING_M
+  # Who hovers is not pushed.
+  stayed_m = np.linalg.norm(told.places_m[:, 0] - (0, 0, 1.3), axis=1)
+  assert stayed_m.max() < (0.05 if 'estimator' in fields else 2e-3)
+
+
+def test_it_is_flown_in_the_same_way_again(flown: Callable[..., Told]) -> None:
+  one, other = (flown(**BEHIND, observer_hover='none') if False else
+                flown(**BEHIND) for _ in range(2))  # fmt: skip
+  np.testing.assert_array_equal(one.places_m, other.places_m)
+
+
+def test_who_has_nobody_in_the_way_flies_as_with_refuse(
+  flown: Callable[..., Told],
+) -> None:
+  """Whole formations do."""
+  ways = [
+    flown(6.0, safety=each, observers=5, payload='001010').places_m
+    for each in safety.SAFETIES
+  ]
+  np.testing.assert_allclose(*ways, atol=1e-6)
+
+
+PLACE = {'units': payload.Units(meaning='place'), 'observers': 5}
+
+
+def test_a_place_has_a_slot_for_everybody(flown: Callable[..., Told]) -> None:
+  told = flown(**PLACE, payload='000010', safety='avoid')
+  assert told.rewards == [1.0] * 5
+  np.testing.assert_allclose(told.places_m[-1, 1:], told.targets_m, atol=2e-3)
+  assert told.least_m() > safety.MINIMUM_SPACING_M
+  # On a ring about the place, but for the slot that the performer is in.
+  about_m = np.linalg.norm(told.places_m[-1, 1:, :2] - (0, 0.4), axis=1)
+  np.testing.assert_allclose(np.delete(about_m, 2), 0.5, atol=2e-3)
+
+
+def test_a_slot_follows_from_ones_own_place() -> None:
+  agreed = agreement.Agreement(units=payload.Units(meaning='place'))
+  way_m = np.array([0.0, 0.4, 0.0])
+  front = flight.goal_m(np.array([0, -1.3, 1.0]), way_m, agreed)
+  np.testing.assert_allclose(front, (0, -0.1, 1.3), atol=1e-12)
+  right = flight.goal_m(np.array([1.3, -1.3, 1.3]), way_m, agreed)
+  np.testing.assert_allclose(right, (0.5, 0.4, 1.3), atol=1e-12)
+
+
+def test_slots_that_are_too_near_are_refused() -> None:
+  units = payload.Units(meaning='place', slot_m=0.2)
+  with pytest.raises(scenario.ScenarioError, match='`slot_m` must be such'):
+    scenario.Scenario(units=units, observers=5)
+
+
+@pytest.mark.parametrize(
+  ('fields', 'text'),
+  [({'safety': 'hope'}, "must be one of ['refuse', 'avoid']: got 'hope'")],
+)
+def test_an_unknown_safety_is_refused(
+  fields: dict[str, object], text: str
+) -> None:
+  with pytest.raises(scenario.ScenarioError) as said:
+    scenario.Scenario(**fields)
+  assert text in str(said.value)
+
+
+def test_an_unknown_meaning_is_refused() -> None:
+  with pytest.raises(payload.PayloadError, match='`meaning` must be one of'):
+    payload.Units(meaning='wish')
+
+
+@dataclasses.dataclass(frozen=True)
+class Places:
+  """Observers on given places."""
+
+  places_m: tuple[tuple[float, float], ...]
+
+  def poses(self, count: int) -> tuple[layouts.Pose, ...]:
+    return tuple(
+      layouts.facing_performer(*place) for place in self.places_m[:count]
+    )
