@@ -21,6 +21,7 @@ COMMANDS = {
   'suite': "Run the paper's evaluation, or your own, beside its results.",
   'bench': 'Measure images, the loop and whole broadcasts on this machine.',
   'sweep': 'Fly a grid of scenarios and map where messages are read.',
+  'crossings': 'Fly random crossings of vehicles that avoid each other.',
   'drift': 'Show how vehicles hover, beside what was measured.',
   'sensitivity': 'Move each open choice both ways and show what changes.',
   'ablate': 'Take parts out of the receivers and show what they are good for.',

@@ -72,6 +72,9 @@ def way(
     stayers_m: Where others stay.
     spacing_m: How far from them it leads, but for its ends.
   """
+  if not len(stayers_m):
+    return [goal_m]
+
   def meets(corners: list[np.ndarray]) -> np.ndarray:
     """Whom a way comes too near to, (M,)."""
     legs = np.stack([[begin_m, *corners[:-1]], corners], axis=1)  # (L, 2, 2)
