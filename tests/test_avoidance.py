@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 
 from waggle_tasks import scenario
-from waggle_tasks.arenas import layouts
 from waggle_tasks.protocol import (
   agreement,
   flight,
@@ -200,9 +199,7 @@ class Faked:
       self._flights = [
         flight.Flight(
           o['position_m'].copy(),
-          flight.goal_m(
-            o['position_m'], displacement_m, self._scene.agreement
-          ),
+          flight.goal_m(o['position_m'], displacement_m, self._scene.agreement),
           self._begin_s,
         )
         for o in observations
@@ -236,27 +233,21 @@ class Told:
 
 
 @pytest.fixture
-def flown(
-  load: Load, monkeypatch: pytest.MonkeyPatch
-) -> Callable[..., Told]:
+def flown(load: Load, monkeypatch: pytest.MonkeyPatch) -> Callable[..., Told]:
   """Flies a scenario's message at once: its dance is taken as flown."""
 
   def run(seconds: float = 25.0, **fields: object) -> Told:
     scene = scenario.Scenario(duration_s=seconds, **fields)
     silent = performance.Performance()
     monkeypatch.setattr(scenario.Scenario, 'performance', silent)
-    environment = load(
-      'broadcast', cameras=False, duration_s=seconds, **fields
-    )
+    environment = load('broadcast', cameras=False, duration_s=seconds, **fields)
     task, agent = environment.task, Faked(scene)
     displacement_m = scene.message.displacement_m(scene.units)
     timestep, places, rewards = environment.reset(), [], 0.0
     for each, way in zip(
       task._flights._gates, task._flights._progress, strict=True
     ):
-      way.target_m = flight.goal_m(
-        each.hold_m, displacement_m, scene.agreement
-      )
+      way.target_m = flight.goal_m(each.hold_m, displacement_m, scene.agreement)
     task._flights._displacement_m = displacement_m
     monkeypatch.setattr(type(task), 'sends_message', True)
     while not timestep.last():
@@ -266,9 +257,7 @@ def flown(
       found = task.positions_m(environment.physics)
       places.append([*found.values()])
     targets = [way.target_m for way in task._flights._progress]
-    return Told(
-      np.array(places), list(rewards), len(task.refusals), targets
-    )
+    return Told(np.array(places), list(rewards), len(task.refusals), targets)
 
   return run
 
@@ -321,8 +310,7 @@ def test_a_message_through_the_performer_leads_round_it(
 
 
 def test_it_is_flown_in_the_same_way_again(flown: Callable[..., Told]) -> None:
-  one, other = (flown(**BEHIND, observer_hover='none') if False else
-                flown(**BEHIND) for _ in range(2))  # fmt: skip
+  one, other = (flown(**BEHIND) for _ in range(2))
   np.testing.assert_array_equal(one.places_m, other.places_m)
 
 
@@ -365,30 +353,11 @@ def test_slots_that_are_too_near_are_refused() -> None:
     scenario.Scenario(units=units, observers=5)
 
 
-@pytest.mark.parametrize(
-  ('fields', 'text'),
-  [({'safety': 'hope'}, "must be one of ['refuse', 'avoid']: got 'hope'")],
-)
-def test_an_unknown_safety_is_refused(
-  fields: dict[str, object], text: str
-) -> None:
-  with pytest.raises(scenario.ScenarioError) as said:
-    scenario.Scenario(**fields)
-  assert text in str(said.value)
+def test_an_unknown_safety_is_refused() -> None:
+  with pytest.raises(scenario.ScenarioError, match='`safety` must be one of'):
+    scenario.Scenario(safety='hope')
 
 
 def test_an_unknown_meaning_is_refused() -> None:
   with pytest.raises(payload.PayloadError, match='`meaning` must be one of'):
     payload.Units(meaning='wish')
-
-
-@dataclasses.dataclass(frozen=True)
-class Places:
-  """Observers on given places."""
-
-  places_m: tuple[tuple[float, float], ...]
-
-  def poses(self, count: int) -> tuple[layouts.Pose, ...]:
-    return tuple(
-      layouts.facing_performer(*place) for place in self.places_m[:count]
-    )

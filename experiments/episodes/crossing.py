@@ -67,8 +67,8 @@ class Airspace:
       )
     self._physics = mjcf.Physics.from_mjcf_model(room.mjcf_model)
     self._physics.model.opt.timestep = 1 / agreement.STEPS_HZ
-    for each in self._controllers:
-      each.after_compile(self._physics)
+    for one in self._controllers:
+      one.after_compile(self._physics)
     bodies = self._physics.bind([v.airframe for v in self._vehicles])
     roots = self._physics.model.body_rootid[bodies.element_id]
     joints = self._physics.model.body_jntadr[roots]
@@ -85,7 +85,8 @@ class Airspace:
     for vehicle, place_m in zip(self._vehicles, begins_m, strict=True):
       vehicle.set_pose(self._physics, place_m, level)
     self._physics.forward()
-    group, arrivals_s = self._group(begins_m, goals_m), {}
+    group = self._group(begins_m, goals_m)
+    arrivals_s: dict[str, float] = {}
     wanted = self._wanted(goals_m)
     touched, least_m = set[tuple[str, str]](), math.inf
     for frame in range(round(LIMIT_S / _FRAME_S)):
@@ -145,16 +146,17 @@ class Airspace:
     self, begins_m: np.ndarray, goals_m: np.ndarray
   ) -> dict[str, float]:
     """How long each takes where there is nobody else."""
-    group, out = self._group(begins_m, goals_m), {}
+    group, out = self._group(begins_m, goals_m), dict[str, float]()
     wanted = self._wanted(goals_m)
-    alone = {n: convoy.Sight(b, {}, {}) for n, b in zip(self._names, begins_m)}
+    alone = {
+      n: convoy.Sight(b, {}, {})
+      for n, b in zip(self._names, begins_m, strict=True)
+    }
     for frame in range(round(LIMIT_S / _FRAME_S)):
       if len(out) == len(self._names):
         break
       followed = group.fly(wanted, alone)
-      alone = {
-        n: convoy.Sight(group.place_m(n), {}, {}) for n in followed
-      }
+      alone = {n: convoy.Sight(group.place_m(n), {}, {}) for n in followed}
       for name in self._names:
         if group.arrived(name):
           out.setdefault(name, (frame + 1) * _FRAME_S)

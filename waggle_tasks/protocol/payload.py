@@ -155,8 +155,8 @@ class Payload:
     if not isinstance(text, str) or text.count('|') != 2:
       return cls.from_bits(text)
     _, heading, distance = text.split('|')
-    widths = {'heading_bits': len(heading), 'distance_bits': len(distance)}
-    return cls.from_bits(text.replace('|', ''), Units(**widths))
+    units = Units(heading_bits=len(heading), distance_bits=len(distance))
+    return cls.from_bits(text.replace('|', ''), units)
 
   def __int__(self) -> int:
     return int(self.bits, 2)

@@ -144,9 +144,7 @@ def _wishes(law: Law, known: Known) -> tuple[np.ndarray, np.ndarray]:
     level = stayers_m[:, 2] > low_m - law.spacing_m
     level &= stayers_m[:, 2] < high_m + law.spacing_m
     stayers_m = stayers_m[level]
-    free_m = detours.free_m(
-      goal_m, place_m, stayers_m, law.spacing_m + _SAME_M
-    )
+    free_m = detours.free_m(goal_m, place_m, stayers_m, law.spacing_m + _SAME_M)
     corners = detours.way(
       place_m[:2], free_m[:2], stayers_m[:, :2], law.spacing_m + _ROUND_M
     )
@@ -202,7 +200,9 @@ def _reachable(
 ) -> np.ndarray:
   """Velocities (N, C, 3) within a change: braking first, then the chosen."""
   speeds = cells.length(velocities_mps)[:, None]
-  braked = velocities_mps * np.maximum(1 - most_mps / np.maximum(speeds, _TINY), 0)
+  braked = velocities_mps * np.maximum(
+    1 - most_mps / np.maximum(speeds, _TINY), 0
+  )
   change = chosen_mps - velocities_mps
   sizes = cells.length(change)[:, None]
   towards = velocities_mps + change * (most_mps / np.maximum(sizes, _TINY))

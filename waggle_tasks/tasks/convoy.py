@@ -93,17 +93,14 @@ class Convoy:
       sights: By name, what each is told.
     """
     flying = [name for name, way in self._ways.items() if not way.arrived]
+    followed: dict[str, reference.Reference] = {}
     if flying:
-      known = self._known(flying, wanted, sights)
+      known, asked_mps = self._known(flying, wanted, sights)
       velocities = avoidance.step(self._law, known, self._frame_s)
-      followed = {
-        name: self._advance(name, velocity, asked, wanted[name])
-        for name, velocity, asked in zip(
-          flying, velocities, known.asked_mps, strict=True
+      for row, name in enumerate(flying):
+        followed[name] = self._advance(
+          name, velocities[row], asked_mps[row], wanted[name]
         )
-      }
-    else:
-      followed = {}
     for name, way in self._ways.items():
       if name not in followed:
         off_m = np.linalg.norm(wanted[name].position_m - way.goal_m)
@@ -116,8 +113,12 @@ class Convoy:
     flying: list[str],
     wanted: Mapping[str, reference.Reference],
     sights: Mapping[str, Sight],
-  ) -> avoidance.Known:
-    """What all who fly know, each seen from where it should be."""
+  ) -> tuple[avoidance.Known, np.ndarray]:
+    """What all who fly know, each seen from where it should be.
+
+    Returns:
+      That, and (N, 3) the velocities that it has them ask for.
+    """
     rows, speeds, yields, asked = [], [], [], []
     for name in flying:
       sight, way = sights[name], self._ways[name]
@@ -132,13 +133,15 @@ class Convoy:
       )
     ways = [self._ways[name] for name in flying]
     shape = len(flying), len(yields[0]), 3
-    return avoidance.Known(
+    asked_mps = np.stack(asked)
+    known = avoidance.Known(
       np.stack([way.place_m for way in ways]),
       np.stack([way.velocity_mps for way in ways]),
       np.stack([way.goal_m for way in ways]),
       np.reshape(rows, shape), np.reshape(speeds, shape),
-      np.reshape(np.array(yields, bool), shape[:2]), np.stack(asked),
+      np.reshape(np.array(yields, bool), shape[:2]), asked_mps,
     )  # fmt: skip
+    return known, asked_mps
 
   def _advance(
     self,

@@ -5,7 +5,6 @@ nearer to any of them than the rings or the way's own ends are; the shortest one
 is flown (Dijkstra). Only those that are in the way are looked at.
 """
 
-from collections.abc import Sequence
 import heapq
 import math
 
@@ -78,7 +77,8 @@ def way(
   def meets(corners: list[np.ndarray]) -> np.ndarray:
     """Whom a way comes too near to, (M,)."""
     legs = np.stack([[begin_m, *corners[:-1]], corners], axis=1)  # (L, 2, 2)
-    return blocked(legs[:, 0], legs[:, 1], stayers_m, spacing_m).any(axis=0)
+    met = blocked(legs[:, 0], legs[:, 1], stayers_m, spacing_m)
+    return np.any(met, axis=0)
 
   known = meets([goal_m])
   if not known.any():
@@ -144,7 +144,7 @@ def _shortest(
   return None
 
 
-def _back(nodes: np.ndarray, before: Sequence[int]) -> list[np.ndarray]:
+def _back(nodes: np.ndarray, before: np.ndarray) -> list[np.ndarray]:
   node, out = 1, []
   while node != 0:
     out.append(nodes[node])

@@ -9,8 +9,8 @@ import numpy as np
 from waggle_tasks.arenas import flight_room, layouts
 from waggle_tasks.entities import autopilot, controller, crazyflie
 from waggle_tasks.protocol import agreement as agreement_lib
-from waggle_tasks.tasks import drift as drift_lib
 from waggle_tasks.tasks import convoy, estimators, weather
+from waggle_tasks.tasks import drift as drift_lib
 from waggle_tasks.tasks import parts as parts_lib
 
 Offsets = dict[str, tuple[np.ndarray, np.ndarray]]
@@ -196,9 +196,10 @@ class Fleet:
     It sees where others are beside it, so that its own errors are in all of it.
     """
     errors = self._belief.errors(time_s)
-    places_m, rates_mps = physics.data.qpos[self._places], physics.data.qvel[
-      self._rates
-    ]
+    places_m, rates_mps = (
+      physics.data.qpos[self._places],
+      physics.data.qvel[self._rates],
+    )
     out, names = {}, [*self._vehicles]
     for row, name in enumerate(names):
       off_m, off_mps = (0.0, 0.0) if errors is None else (
