@@ -11,6 +11,7 @@ Exit status 0 when nobody touched and all arrived, 1 otherwise.
 
 from collections.abc import Sequence
 import concurrent.futures
+import itertools
 import math
 import multiprocessing
 import sys
@@ -55,7 +56,8 @@ def main(argv: Sequence[str]) -> int:
   ]
   flown = _fly(numbers, shares, seed)
   print(table.render(_HEADER, [_row(each) for each in flown]))
-  good = all(c.arrived == c.vehicles and not c.contacts for c in sum(flown, []))
+  every = itertools.chain.from_iterable(flown)
+  good = all(c.arrived == c.vehicles and not c.contacts for c in every)
   return 0 if good else 1
 
 
@@ -90,7 +92,7 @@ def _fly(
       ]
       for number, share in zip(numbers, shares, strict=True)
     ]  # fmt: skip
-    return [sum((job.result() for job in each), []) for each in jobs]
+    return [[c for job in each for c in job.result()] for each in jobs]
 
 
 def _row(several: Sequence['crossing.Crossing']) -> list[str]:

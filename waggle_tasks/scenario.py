@@ -89,8 +89,8 @@ class Scenario:
       another they wander by its errors.
     drift: How far vehicles wander from where they should be.
     safety: What is done about flights that would meet, one of
-      `safety_lib.SAFETIES`: they are refused, as in the paper, or vehicles avoid
-      each other.
+      `safety_lib.SAFETIES`: they are refused, as in the paper, or vehicles
+      avoid each other.
     sensor: What spoils the observers' images.
     rate_hz: How many images and references there are in a second: 250 over a
       whole number, 10 to 125.
