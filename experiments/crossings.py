@@ -1,11 +1,12 @@
 """Flies random crossings of vehicles that avoid each other, and counts.
 
-Vehicles begin at random places of a square and all go to random others at once,
-in MuJoCo, by the ideal controller and by the law of `--safety=avoid`; nothing is
-drawn. For each number of vehicles it prints how many crossings there were, how
-many pairs touched, in how many crossings somebody was caught and had not
-arrived after a minute, how many vehicles arrived, the least distance of two, how
-much longer than alone they flew in the mean, and when the last one arrived.
+Vehicles begin at random places of a square and all go to random others at
+once, in MuJoCo, by the ideal controller and by the law of `--safety=avoid`;
+nothing is drawn. For each number of vehicles it prints how many crossings there
+were, how many pairs touched, in how many crossings somebody was caught and had
+not arrived after a minute, how many vehicles arrived, the least distance of
+two, how much longer than alone they flew in the mean, and when the last one
+arrived.
 Exit status 0 when nobody touched and all arrived, 1 otherwise.
 """
 

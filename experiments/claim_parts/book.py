@@ -146,6 +146,9 @@ CLAIMS = {
   'sway-noise': _sweep('sway', 2, *_SWAY, table=1, noise_sigma='10'),
   'sway-dancer': _sweep('sway', 2, table=2, performer_drift_m='0.002'),
   'hover': Claim('hover', TEXT, ('drift',)),
+  'crossings': Claim(
+    'crossings', UNCHECKED, detail='a part would have another least distance'
+  ),
   'hover-dancer': _sweep(
     'hover-dancer', 2, '--performer_hover=mocap', observers=1,
     distance_m='1.6', bearing_deg='45',
