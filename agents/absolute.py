@@ -208,6 +208,7 @@ class Follower:
     shares = blobs.totals / self._ghost.total
     fits = (shares > _MIN_SHARE) & (shares < _MAX_SHARE)
     sides = (blobs.boxes[:, 2:] - blobs.boxes[:, :2]) / self._ghost.size_px
+    sides = np.maximum(sides, 1e-9)  # Some are of nothing.
     fits &= (np.abs(np.log2(sides)) < np.log2(_MOST_SIDE)).all(axis=1)
     (picked,) = np.nonzero(fits)
     if len(picked) != 1:

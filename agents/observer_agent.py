@@ -113,7 +113,7 @@ class ObserverAgent:
     self.read_s = time_s
     for event in events:
       self.events.append(event)
-      if event.message is not None:
+      if isinstance(event.message, payload.Payload):
         command = navigator_lib.Command(event.message, self._chain.digest)
         self._navigator.accept(command, position_m, time_s)
         self._command = command

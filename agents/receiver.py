@@ -35,21 +35,25 @@ class Event:
     symbol: NULL, a motion symbol, or UNKNOWN.
     state: What the frame parser waits for after it.
     recognition: The scores of a motion; None for NULL.
-    message: The payload, when the event completes a frame.
+    message: What was sent, when the event completes a message.
     rejection: Why the event broke a frame, when it did.
     view_angle_deg: With a message, where the dance was seen from, see
       `views.View`; None without a bank of views.
     distance_m: The same.
+    word: With END of a frame that was read as a whole, its symbols.
+    clear: How much nearer that is than any other word, 0 to 1.
   """
 
   time_s: float
   symbol: Symbol
   state: frame.State
   recognition: recogniser.Recognition | None = None
-  message: payload.Payload | None = None
+  message: payload.Payload | payload.Data | None = None
   rejection: str | None = None
   view_angle_deg: float | None = None
   distance_m: float | None = None
+  word: tuple[int, ...] | None = None
+  clear: float | None = None
 
 
 class Receiver(Protocol):
@@ -114,7 +118,7 @@ _EVENT = {
   'symbol': Symbol,
   'state': frame.State,
   'recognition': recogniser.Recognition | None,
-  'message': payload.Payload | None,
+  'message': payload.Payload | payload.Data | None,
 }
 
 
@@ -129,6 +133,15 @@ def _check(
       raise group.ReceiverError(
         f'`{field}` of {whose} must be {word}: got {held!r} at {time_s:g} s'
       )
+
+
+def _check_language(agreement: agreement_lib.Agreement) -> None:
+  """Refuses a language whose frames have no nulls between gestures."""
+  if agreement.language is not None:
+    raise group.ReceiverError(
+      "`language` must be 'paper' for receivers that read one gesture after"
+      " another: choose the receiver 'joint', which reads every language"
+    )
 
 
 class StagedReceiver:
@@ -148,6 +161,7 @@ class StagedReceiver:
       config: The receiver's numbers, for the paper's camera; None for its
         own.
     """
+    _check_language(agreement)
     config = group.zoomed(config or self.DEFAULT, agreement.camera.zoom)
     clock = agreement.clock if config.framing.clock else None
     least_s = 0.0 if clock is None else clock.least_s

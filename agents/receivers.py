@@ -8,6 +8,7 @@ from waggle_tasks.agents import config as config_lib
 from waggle_tasks.agents import (
   description,
   group,
+  joint_receiver,
   outsiders,
   receiver,
   settings,
@@ -38,6 +39,7 @@ RECEIVERS: dict[str, Any] = {  # A `Maker` each.
   'klt_bank': receiver.KltBankReceiver,
   'absolute': receiver.AbsoluteReceiver,
   'view_bank': receiver.ViewBankReceiver,
+  'joint': joint_receiver.JointReceiver,
 }
 _PARTS = ('step', 'track', 'segment')  # Of what was made.
 

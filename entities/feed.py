@@ -108,8 +108,16 @@ class Feed:
     chosen = self._chosen
     if self._noise is not None:
       self._noise(image)
-    if self._during(chosen.blackout_s, chosen.blackout_length_s):
+    if self._is_black():
       corruptors.blacken(image, chosen.blackout_share)
+
+  def _is_black(self) -> bool:
+    chosen, frame_s = self._chosen, self._agreement.frame_s
+    begin_s, every_s = chosen.blackout_s, chosen.blackout_every_s
+    if every_s:  # As of the last begin, which is rounded to a frame.
+      past = (self._frame * frame_s + frame_s / 2 - begin_s) // every_s
+      begin_s += every_s * max(0.0, past)
+    return self._during(begin_s, chosen.blackout_length_s)
 
   def _during(self, begin_s: float, length_s: float, after: int = 0) -> bool:
     """Whether this frame is in a stretch, or in what follows its first."""

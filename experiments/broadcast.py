@@ -37,6 +37,9 @@ from waggle_tasks.experiments.record import (
   writer,
 )
 from waggle_tasks.experiments.studies import job_progress
+from waggle_tasks.protocol import packets
+
+_BITS = 16  # That are shown of many.
 
 scenario_flags.define()
 recording_flags.define()
@@ -53,7 +56,6 @@ _OUTPUT = flags.DEFINE_string(
 def main(argv: Sequence[str]) -> int:
   """Runs the scenario of the flags and returns the exit status."""
   scene, receiver_name = _chosen()
-  receivers.make(receiver_name, scene.agreement)
   nulls.check([scene], receiver_name)
   if note := reach.note([scene], receiver_name):
     print(note, file=sys.stderr)
@@ -84,11 +86,14 @@ def main(argv: Sequence[str]) -> int:
 def _chosen() -> tuple[scenario.Scenario, str]:
   """The scenario and the receiver of the flags, or of a run and the flags."""
   if _CONFIG.value is None:
-    return scenario_flags.read(), _RECEIVER.value
+    scene = scenario_flags.read()
+    return scene, receiver_flag.chosen(_RECEIVER, [scene])
   path = config_flag.path(_CONFIG.value)
   known = archive.read_config(path).receiver
   scene = scenario_flags.read(archive.read_scenario(path))
-  return scene, _RECEIVER.value if _RECEIVER.present else known
+  name = _RECEIVER.value if _RECEIVER.present else known
+  receivers.make(name, scene.agreement)
+  return scene, name
 
 
 @contextlib.contextmanager
@@ -130,8 +135,8 @@ def report(scene: scenario.Scenario, verdict: verdicts.Verdict) -> str:
   rows = [
     (
       each.observer,
-      each.expected or 'nothing',
-      each.decoded or '-',
+      _short(each.expected or 'nothing'),
+      _short(each.decoded or '-'),
       table.number(each.end_s),
       table.number(each.final_null_s),
       table.number(each.start_s),
@@ -154,12 +159,26 @@ def report(scene: scenario.Scenario, verdict: verdicts.Verdict) -> str:
   expecting = sum(each.expected is not None for each in verdict.outcomes)
   lines.append(
     f'Group {"passed" if verdict.passed else "FAILED"}: {verdict.correct} of'
-    f' {expecting} observers decoded {scene.payload}.'
+    f' {expecting} observers decoded {_told(scene)}.'
     if expecting
     else f'Group {"passed" if verdict.passed else "FAILED"}: nothing was to be'
     ' decoded.'
   )
   return '\n'.join(lines)
+
+
+def _short(bits: str) -> str:
+  """Bits for a cell of the table, which shows the first of many."""
+  return bits if len(bits) <= _BITS else f'{bits[:_BITS]}.. {len(bits)} bits'
+
+
+def _told(scene: scenario.Scenario) -> str:
+  """What was sent, in a line."""
+  if not scene.bits:
+    return scene.payload
+  text = packets.bits_text(scene.bits)
+  said = '' if text is None or not text.isprintable() else f': {text!r}'
+  return f'{_short(scene.bits)}{said}'
 
 
 def _estimated(scene: scenario.Scenario, cell: str) -> tuple[str, ...]:

@@ -1,8 +1,8 @@
 """Makes the page of a folder again from the data in it.
 
 FOLDER is a run folder, as `waggle broadcast` leaves one, or the result folder
-of `waggle suite` or `waggle sweep`; its page is index.html, a static file that
-needs neither a server nor a network.
+of `waggle suite`, `waggle sweep` or `waggle link`; its page is index.html, a
+static file that needs neither a server nor a network.
 """
 
 from collections.abc import Sequence
@@ -12,7 +12,13 @@ import sys
 from absl import flags
 
 from waggle_tasks.experiments import launch
-from waggle_tasks.experiments.pages import run_page, suite_page, sweep_output
+from waggle_tasks.experiments.pages import (
+  link_page,
+  run_page,
+  suite_page,
+  sweep_output,
+)
+from waggle_tasks.experiments.results import goodput
 from waggle_tasks.experiments.studies import case_rows
 
 ARGUMENTS = 'FOLDER'
@@ -24,7 +30,9 @@ def main(argv: Sequence[str]) -> int:
     raise flags.Error(f'takes one {ARGUMENTS}: got {argv[1:]}')
   folder = pathlib.Path(argv[1])
   if (folder / case_rows.JOURNAL).exists():
-    print(sweep_output.write(folder, case_rows.read_sweep(folder)))
+    rows = case_rows.read_sweep(folder)
+    shown = link_page if goodput.is_link(rows) else sweep_output
+    print(shown.write(folder, rows))
     return 0
   is_suite = (folder / case_rows.RESULTS).exists()
   print((suite_page if is_suite else run_page).write(folder))

@@ -11,6 +11,7 @@ sets two result folders side by side and runs nothing.
 
 from collections.abc import Sequence
 import dataclasses
+import hashlib
 import json
 import pathlib
 import sys
@@ -19,7 +20,6 @@ import time
 from absl import flags
 
 from waggle_tasks import suites
-from waggle_tasks.agents import receivers
 from waggle_tasks.experiments import launch
 from waggle_tasks.experiments.flags import (
   engine_flag,
@@ -39,6 +39,7 @@ from waggle_tasks.experiments.studies import case_rows
 from waggle_tasks.protocol import checks
 
 ARGUMENTS = '[B]'
+_ROOM = 40  # Characters of a value in a folder's name.
 
 _SUITE = flags.DEFINE_string(
   'suite',
@@ -66,10 +67,10 @@ def main(argv: Sequence[str]) -> int:
   if argv[1:]:
     raise flags.Error(f'takes only flags, --name=value: got {argv[1]!r}.')
   cases = _cases()
-  receivers.make(_RECEIVER.value)
   scenes = [case.scene for case in cases]
+  reader = receiver_flag.chosen(_RECEIVER, scenes)
   for look in (nulls.check, reach.note):
-    if note := look(scenes, _RECEIVER.value):
+    if note := look(scenes, reader):
       print(note, file=sys.stderr)
   # Imported here: to compare results, no simulator is needed.
   from waggle_tasks.experiments.studies import runner, suite_study
@@ -77,15 +78,15 @@ def main(argv: Sequence[str]) -> int:
   engine, what = engine_flag.engine()
   stem = pathlib.Path(_SUITE.value).stem
   changes = scenario_fields.flags(scenario_flags.given())
-  words = [each.removeprefix('--') for each in changes]
-  name = '-'.join([stem, _RECEIVER.value, *_CASE.value, *words])
+  words = [_word(each.removeprefix('--')) for each in changes]
+  name = '-'.join([stem, reader, *_CASE.value, *words])
   folder = pathlib.Path(_OUTPUT.value or f'runs/{name}')
   command = provenance.command_line(
     'suite',
-    [f'--suite={_SUITE.value}', f'--receiver={_RECEIVER.value}', *changes],
+    [f'--suite={_SUITE.value}', f'--receiver={reader}', *changes],
   )
   began_s = time.monotonic()
-  study = suite_study.Suite(cases, _RECEIVER.value, run_page.leave)
+  study = suite_study.Suite(cases, reader, run_page.leave)
   rows = runner.run(study, folder, engine, command)
   wall_s = time.monotonic() - began_s
   page = suite_page.write(folder)
@@ -96,6 +97,14 @@ def main(argv: Sequence[str]) -> int:
     f' wall time in this call with {what}, {page}'
   )
   return 0 if all(row.as_expected for row in rows) else 1
+
+
+def _word(change: str) -> str:
+  """A change for a folder's name, which has no room for long values."""
+  name, _, value = change.partition('=')
+  if len(value) <= _ROOM:
+    return change
+  return f'{name}={hashlib.sha256(value.encode()).hexdigest()[:8]}'
 
 
 def _cases() -> tuple[suites.Case, ...]:

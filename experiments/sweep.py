@@ -15,7 +15,6 @@ import sys
 
 from absl import flags
 
-from waggle_tasks.agents import receivers
 from waggle_tasks.experiments import launch
 from waggle_tasks.experiments.flags import (
   engine_flag,
@@ -60,22 +59,22 @@ def main(argv: Sequence[str]) -> int:
     raise flags.Error(f'takes only flags, --name=value: got {argv[1]!r}.')
   grid = sweep_cases.grid(_GRID.value)
   cases = sweep_cases.cases(grid, scenario_flags.values(), _REPEATS.value)
-  receivers.make(_RECEIVER.value, cases[0].scene.agreement)
   checks.integer(
     'replays', _REPLAYS.value, 0, _MOST_REPLAYS, sweep_cases.SweepError
   )
   scenes = [case.scene for case in cases]
+  reader = receiver_flag.chosen(_RECEIVER, scenes)
   for look in (nulls.check, reach.note):
-    if note := look(scenes, _RECEIVER.value):
+    if note := look(scenes, reader):
       print(note, file=sys.stderr)
   # Imported here: to show results, no simulator is needed.
   from waggle_tasks.experiments.studies import runner, sweep_study
 
   engine, _ = engine_flag.engine()
   command = provenance.command_line('sweep', launch.given_flags())
-  factors = '-'.join(['sweep', _RECEIVER.value, *grid])
+  factors = '-'.join(['sweep', reader, *grid])
   folder = pathlib.Path(_OUTPUT.value or f'runs/{factors}')
-  study = sweep_study.Sweep(cases, _RECEIVER.value, _REPLAYS.value)
+  study = sweep_study.Sweep(cases, reader, _REPLAYS.value)
   return _show(folder, runner.run(study, folder, engine, command))
 
 

@@ -26,6 +26,7 @@ OTHERS = {
   'hover_log': scenario_fields.table()['hover_log'].told(
     hover.Spectrum(*[(0.5,) * hover.BANDS] * 6)
   ),
+  'language': 'swift', 'bits': '01', 'repeat': 2,
   'dynamics': 'rotors', 'estimator': 'mocap', 'gusts': True, 'downwash': True,
 }  # fmt: skip
 
@@ -58,6 +59,8 @@ def test_every_field_that_is_changed_is_said(name: str) -> None:
     extra = {'performer_hover': 'log'}
   if name in ('estimator', 'wind_mps', 'gusts', 'downwash'):
     extra = {'dynamics': 'rotors'}
+  if name in ('bits', 'repeat'):
+    extra = {'language': 'swift'}
   if name == 'gusts':
     extra['wind_mps'] = 1.0
   said = changes.of(made(**{**extra, name: other}))

@@ -137,7 +137,7 @@ def test_a_gesture_is_flown_in_the_time_that_a_refusal_names() -> None:
   while True:
     codebook = gestures.v_codebook(0.12, 0.25, duration_s)
     try:
-      limits.check_codebook(codebook, limits.LIMITS['rotors'])
+      limits.check_motions(codebook.gestures, limits.LIMITS['rotors'])
     except limits.LimitError as error:  # Of one gesture after another.
       duration_s = float(str(error).split('; in ')[1].split()[0])
       refusals += 1

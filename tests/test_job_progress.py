@@ -37,6 +37,16 @@ def test_a_job_that_tells_more_than_its_time_does_not_overrun(
   assert '2/2 s simulated' in capsys.readouterr().err.splitlines()[-1]
 
 
+def test_jobs_whose_times_round_up_end_together(
+  capsys: pytest.CaptureFixture[str],
+) -> None:
+  names = [str(number) for number in range(5)]
+  news = [pool.Done(pool.Job(name, print, ()), 1) for name in names]
+  lengths_s = dict.fromkeys(names, 1.0032)  # 250.8 steps of 4 ms.
+  assert [*job_progress.shown(news, lengths_s, lambda *_: 'all')] == news
+  assert '5/5 s simulated' in capsys.readouterr().err.splitlines()[-1]
+
+
 def test_a_whole_flight_is_kept_where_warnings_are_errors(
   waggle: Callable[..., subprocess.CompletedProcess[str]],
   tmp_path: pathlib.Path,

@@ -241,7 +241,7 @@ def test_a_layout_from_outside_comes_back_where_it_can_be_imported(
     ({'appearance': {'floor': 'plan'}}, '`s.appearance.floor` must be one of'),
     ({'codebook': {'gestures': [{'symbol': 'STRT'}]}},
      "`s.codebook.gestures[0].symbol` must be one of ['NULL', 'START', '0',"
-     " '1', 'END', 'UNKNOWN']: got 'STRT'. Did you mean START?"),
+     " '1', 'END', 'LEVEL', 'UNKNOWN']: got 'STRT'. Did you mean START?"),
     ({'codebook': {'gestures': [{'symbol': 'START'}]}},
      '`s.codebook.gestures[0].corners_m` must be given'),
     ({'codebook': {'gestures': [

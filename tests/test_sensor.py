@@ -1,6 +1,7 @@
 """What spoils an observer's images does what it says, and nothing else."""
 
 from collections.abc import Callable
+import dataclasses
 import math
 
 from dm_control import composer
@@ -26,6 +27,7 @@ EVERYTHING = Sensor(
   photons=2000.0,
   blackout_s=0.3,
   blackout_length_s=0.1,
+  blackout_every_s=0.7,
   blackout_share=0.3,
   repeated_share=0.1,
   freeze_s=0.6,
@@ -128,6 +130,23 @@ def test_a_blackout_blackens_its_share_for_its_length(
   expected[25:75, :, :columns] = 0
   np.testing.assert_array_equal(images, expected)
   assert [*told] == [*range(100)]  # It goes on being told the time.
+
+
+def test_a_blackout_comes_again_as_often_as_it_is_asked_to() -> None:
+  chosen = Sensor(blackout_s=1.0, blackout_length_s=0.4, blackout_every_s=1.5)
+  images, _ = deliver(chosen, 120, level=90)
+  black = np.flatnonzero(~images.any(axis=(1, 2, 3)))
+  # From 1.0, 2.5 and 4.0 s on; 2.5 s lies between two frames.
+  assert [*black] == [*range(25, 35), *range(62, 72), *range(100, 110)]
+
+
+def test_a_blackout_that_comes_again_begins_as_one_that_does_not() -> None:
+  for begin_s in (0.0, 0.31, 0.33, 1.02):
+    once = Sensor(blackout_s=begin_s, blackout_length_s=0.5)
+    often = dataclasses.replace(once, blackout_every_s=10.0)
+    np.testing.assert_array_equal(
+      deliver(often, 100, level=90)[0], deliver(once, 100, level=90)[0]
+    )
 
 
 def test_a_frozen_picture_has_new_times() -> None:
@@ -284,6 +303,10 @@ def test_an_episode_with_everything_spoilt_is_flown(receiver: str) -> None:
     ({'blackout_s': -0.1}, '`blackout_s` must be between 0 and 600: got -0.1'),
     ({'blackout_length_s': -1}, '`blackout_length_s` must be between 0 and'),
     ({'blackout_share': 1.5}, '`blackout_share` must be between 0 and 1'),
+    (
+      {'blackout_every_s': 2, 'blackout_length_s': 2},
+      '`blackout_every_s` must be 0, or more than .* 2: got 2',
+    ),
   ],
 )
 def test_a_disturbance_of_no_sensible_size_is_refused(

@@ -11,15 +11,19 @@ from waggle_tasks import sensor as sensor_lib
 from waggle_tasks.arenas import bounds, layouts
 from waggle_tasks.entities import optics
 from waggle_tasks.protocol import agreement as agreement_lib
-from waggle_tasks.protocol import camera as camera_lib
 from waggle_tasks.protocol import (
+  alphabets,
   checks,
   clock,
   controls,
   flight,
   gestures,
+  language_names,
+  languages,
+  packets,
   timing,
 )
+from waggle_tasks.protocol import camera as camera_lib
 from waggle_tasks.protocol import limits as limits_lib
 from waggle_tasks.protocol import payload as payload_lib
 from waggle_tasks.protocol import performance as performance_lib
@@ -39,6 +43,8 @@ _DETOUR_M = 0.3  # How far those who avoid come from their ways, about.
 NO_SEND_S = 10.0  # Paper, section 'Controls and supplemental suite'.
 INTERRUPTED_S = 60.0  # The same.
 MAX_OBSERVERS = 64
+PAPER = 'paper'
+_READ_S = 3.0  # After data, which nobody flies.
 _SIDE_PX = (64, 2048)  # Of an image.
 _CLEAR_M = 0.1  # From the highest point of a gesture to the ceiling.
 
@@ -73,7 +79,14 @@ class Scenario:
     stop_s: When transmission stops, in s, if `control` is 'interrupted'.
     duration_s: How long the episode lasts at most, in s; unset, 10 s without
       sending, 60 s when interrupted, else 12 s after the dance, 30 s where
-      vehicles avoid each other.
+      vehicles avoid each other, 3 s after data.
+    language: What is spoken, 'paper' or one of `languages.LANGUAGES`, whose
+      code may be changed, such as 'swift:check=crc4,parity=0'; or a
+      `languages.Language` of your own, as a flag a JSON file of one, FILE.json.
+      A language brings its own gestures and pauses.
+    bits: Bits that are sent in place of the payload, in numbered packets with
+      a check, in any language but the paper's; empty for the payload.
+    repeat: How often all of it is said, 1 to 100; once in the paper.
     codebook: The agreed gestures.
     pauses: The agreed pauses.
     tolerance: How far from its time a motion may be seen.
@@ -119,6 +132,9 @@ class Scenario:
   black_observer: int = 2
   stop_s: float = 26.0
   duration_s: float | None = None
+  language: str | languages.Language = PAPER
+  bits: str = ''
+  repeat: int = 1
   codebook: gestures.Codebook = gestures.v_codebook()
   pauses: timing.Timing = timing.Timing()
   tolerance: clock.Tolerance = clock.Tolerance()
@@ -161,8 +177,10 @@ class Scenario:
       'camera_width_px': _SIDE_PX,
       'camera_height_px': _SIDE_PX,
       'camera_fovy_deg': (10.0, 120.0),
+      'repeat': (1, 100),
     }
     checks.settle_numbers(self, counts, ScenarioError)
+    self._check_language()
     agreed = self.agreement  # Which checks itself.
     for name in ('rate_hz', 'hover_height_m'):
       checks.settle(self, name, getattr(agreed, name))
@@ -183,7 +201,7 @@ class Scenario:
     if self.duration_s is None:
       del limits['duration_s']
     checks.settle_numbers(self, limits, ScenarioError)
-    limits_lib.check_codebook(self.codebook, limits_lib.LIMITS[self.dynamics])
+    limits_lib.check_motions(agreed.motions, limits_lib.LIMITS[self.dynamics])
     self._check_height()
     payload_lib.Payload.from_bits(self.payload, self.units)
     self.surroundings.check(self.poses(), self._reach_m())
@@ -200,7 +218,8 @@ class Scenario:
     seen_with = camera_lib.Camera.of(
       self.camera_width_px, self.camera_height_px, self.camera_fovy_deg
     )
-    return agreement_lib.Agreement(
+    spoken = self._language()
+    agreed = agreement_lib.Agreement(
       self.codebook,
       self.pauses,
       self.tolerance,
@@ -208,14 +227,21 @@ class Scenario:
       seen_with,
       self.rate_hz,
       self.hover_height_m,
+      spoken,
+      packets.Packets.of(len(self.bits)) if self.bits else None,
+    )
+    if spoken is None or not isinstance(spoken.alphabet, alphabets.Gestures):
+      return agreed
+    return dataclasses.replace(
+      agreed, codebook=spoken.alphabet.codebook, pauses=spoken.pauses
     )
 
   @property
   def performance(self) -> performance_lib.Performance:
     """What the performer flies: the message, or what comes in place of one."""
     return controls.perform(
-      self.control, self.message, self.seed, self.codebook, self.pauses,
-      self.stop_s,
+      self.control, self.message, self.seed, self.agreement, self.stop_s,
+      self.bits, self.repeat,
     )  # fmt: skip
 
   @property
@@ -227,6 +253,7 @@ class Scenario:
         self.sensor,
         blackout_s=0.0,
         blackout_length_s=sensor_lib.ALWAYS_S,
+        blackout_every_s=0.0,
         blackout_share=1.0,
       )
     return tuple(out)
@@ -240,8 +267,10 @@ class Scenario:
       return NO_SEND_S
     if self.control == 'interrupted':
       return INTERRUPTED_S
-    more_s = AVOIDING_S if self.safety == 'avoid' else 0.0
-    return self.performance.schedule.end_s + AFTERMATH_S + more_s
+    after_s = _READ_S if self.bits else AFTERMATH_S
+    if self.safety == 'avoid' and not self.bits:
+      after_s += AVOIDING_S
+    return self.performance.schedule.end_s + after_s
 
   def poses(self) -> dict[str, layouts.Pose]:
     """Where each vehicle starts, before jitter, by its name.
@@ -330,6 +359,43 @@ class Scenario:
           " air is felt and the truth is known there; choose 'rotors'"
         )
 
+  def _language(self) -> languages.Language | None:
+    """What is spoken; None for the paper's."""
+    if isinstance(self.language, languages.Language):
+      return self.language
+    if self.language == PAPER:
+      return None
+    choices = [PAPER, *languages.LANGUAGES]
+    stem, _, changes = str(self.language).partition(':')
+    checks.choice('language', stem, choices, ScenarioError)
+    if stem == PAPER:
+      raise ScenarioError(
+        f'`language` {PAPER!r} must stand alone, as it has no code to change:'
+        f' got {changes!r} after it'
+      )
+    return language_names.find(str(self.language))
+
+  def _check_language(self) -> None:
+    """Refuses what the language that is spoken does not take."""
+    spoken = self._language()
+    if spoken is None:
+      for field, usual in (('bits', ''), ('repeat', 1)):
+        if getattr(self, field) != usual:
+          raise ScenarioError(
+            f'`{field}` must not be given with `language` {PAPER!r}, which says'
+            f' one payload once: choose one of {[*languages.LANGUAGES]}'
+          )
+      return
+    if self.bits:
+      payload_lib.Data(self.bits)
+    for field in ('codebook', 'pauses'):
+      if getattr(self, field) != getattr(Scenario, field):
+        raise ScenarioError(
+          f'`{field}` must not be given with `language`: {self.language!r} has'
+          f' its own; give it with {PAPER!r}, or a `languages.Language` of your'
+          ' own'
+        )
+
   def _check_exposure(self, frame_s: float) -> None:
     """Refuses one that takes longer than from one image to the next."""
     if self.sensor.exposure_s > frame_s:
@@ -340,7 +406,7 @@ class Scenario:
 
   def _check_height(self) -> None:
     """Refuses gestures that leave the room."""
-    most_m = bounds.HEIGHT_M - _CLEAR_M - self.codebook.highest_m
+    most_m = bounds.HEIGHT_M - _CLEAR_M - self.agreement.highest_m
     if self.hover_height_m > most_m:
       raise ScenarioError(
         f'`hover_height_m` must be at most {most_m:g}, so that gestures stay'

@@ -20,6 +20,7 @@ _LIMITS = {
   'flicker_hz': (0.0, 1000.0),
   'blackout_s': (0.0, ALWAYS_S),
   'blackout_length_s': (0.0, ALWAYS_S),
+  'blackout_every_s': (0.0, ALWAYS_S),
   'blackout_share': (0.0, 1.0),
   'repeated_share': (0.0, 1.0),
   'freeze_s': (0.0, ALWAYS_S),
@@ -59,6 +60,8 @@ class Sensor:
     blackout_s: When the picture turns black, in s.
     blackout_length_s: For how long the picture is black, in s; 0 for never, 600
       for the rest.
+    blackout_every_s: How long after its begin the picture turns black again, in
+      s, and so on; 0 for once, else longer than it is black.
     blackout_share: Share of the width of the picture that turns black, from the
       left.
     repeated_share: Probability that the last picture comes again, with a new
@@ -82,6 +85,7 @@ class Sensor:
   photons: float = 0.0
   blackout_s: float = 0.0
   blackout_length_s: float = 0.0
+  blackout_every_s: float = 0.0
   blackout_share: float = 1.0
   repeated_share: float = 0.0
   freeze_s: float = 0.0
@@ -94,6 +98,11 @@ class Sensor:
     if 0 < self.photons < MIN_PHOTONS:
       raise SensorError(
         f'`photons` must be 0 or at least {MIN_PHOTONS:g}: got {self.photons!r}'
+      )
+    if 0 < self.blackout_every_s <= self.blackout_length_s:
+      raise SensorError(
+        '`blackout_every_s` must be 0, or more than the `blackout_length_s` of'
+        f' {self.blackout_length_s:g}: got {self.blackout_every_s!r}'
       )
 
   @property

@@ -149,6 +149,7 @@ CLAIMS = {
   'crossings': Claim(
     'crossings', UNCHECKED, detail='a part would have another least distance'
   ),
+  'languages': Claim('languages', TEXT, ('languages',)),
   'hover-dancer': _sweep(
     'hover-dancer', 2, '--performer_hover=mocap', observers=1,
     distance_m='1.6', bearing_deg='45',
@@ -203,6 +204,30 @@ CLAIMS = {
   'frozen-klt': _sweep(
     'last-rest', 2, '--freeze_length_s=600', observers=3, table=0,
     receiver='klt', freeze_s='93', noise_sigma='0',
+  ),
+  'link': Claim(
+    'link', ROWS,
+    (
+      'link', '--schemes=swift,swift x3', '--conditions=calm,blackouts',
+      '--broadcasts=4',
+    ),
+  ),
+  'link-paper': Claim(
+    'link-paper', ROWS,
+    (
+      'link', '--schemes=paper,paper without nulls', '--conditions=mocap',
+      '--broadcasts=2',
+    ),
+  ),
+  'link-places': Claim(
+    'link-places', ROWS,
+    (
+      'link', '--schemes=swift', '--conditions=calm,noise', '--broadcasts=1',
+      '--distances=0.6,1.3,3', '--bearings=0,60',
+    ),
+  ),
+  'link-codes': Claim(
+    'link-codes', UNCHECKED, detail='ten million messages each take minutes'
   ),
   'paper': Claim(
     'paper', ROWS,

@@ -18,7 +18,7 @@ from waggle_tasks.experiments.claim_parts import (
 from waggle_tasks.experiments.studies import case_rows
 
 # Launchers that leave a folder, and so are told where.
-_LEAVES = ('broadcast', 'sweep', 'suite', 'sensitivity', 'ablate')
+_LEAVES = ('broadcast', 'sweep', 'link', 'suite', 'sensitivity', 'ablate')
 _MOST = 1  # The exit status of a command that ran; above, it did not.
 
 

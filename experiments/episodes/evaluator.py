@@ -29,7 +29,7 @@ def expected_bits(scene: scenario.Scenario, number: int) -> str | None:
     return None
   if scene.control == 'black_input' and number == scene.black_observer:
     return None
-  return scene.payload
+  return scene.bits or scene.payload
 
 
 def expected_displacement_m(scene: scenario.Scenario) -> np.ndarray:
@@ -83,7 +83,8 @@ def _judge_reading(
   message, decoded = _message(events)
   start_s = _start_s(events)
   failures = _contact(rollout, name)
-  until_s = math.inf if start_s is None else start_s
+  flies = not scene.bits  # Data command nothing.
+  until_s = start_s if flies and start_s is not None else math.inf
   failures += _early_motion(rollout, name, until_s)
   if message is None or decoded is None:
     why = reasons.diagnose(events)
@@ -94,12 +95,12 @@ def _judge_reading(
     )  # fmt: skip
   seen = [e for e in events if isinstance(e, receiver.Event)]
   seen = seen[: seen.index(message) + 1]
-  failures += _frame(seen, decoded)
+  failures += _frame(scene, seen, decoded)
   if decoded != expected:
     failures.append(f'message: read {decoded}, sent {expected}')
     failures += reasons.find(scene, rollout, name)
   final_null_s = message.time_s if message.symbol == 'NULL' else None
-  if start_s != final_null_s:
+  if start_s != (final_null_s if flies else None):
     null = 'no final null'
     if final_null_s is not None:
       null = f'final null at {final_null_s} s'
@@ -109,8 +110,10 @@ def _judge_reading(
     for event in events
     if isinstance(event, safety.Refusal)
   ]
-  flown = _fly(scene, rollout, name, message.time_s)
-  failures += flown.pop('failures')
+  flown: dict[str, Any] = {}
+  if flies:
+    flown = _fly(scene, rollout, name, message.time_s)
+    failures += flown.pop('failures')
   return verdicts.Outcome(
     name, expected, decoded,
     end_s=_end_s(seen),
@@ -175,8 +178,13 @@ def _early_motion(
   return [f'{verdicts.EARLY}: {away_m[early].max():.3f} m from {first_s:.2f} s']
 
 
-def _frame(events: Sequence[receiver.Event], bits: str) -> list[str]:
-  """Whether the last events are the whole frame of a message, one by one."""
+def _frame(
+  scene: scenario.Scenario, events: Sequence[receiver.Event], bits: str
+) -> list[str]:
+  """Whether what was read is the whole frame of a message, all of it."""
+  words = [event.word for event in events if event.word is not None]
+  if words:
+    return _words(scene, words, bits)
   motions = ['START', *bits, 'END']
   nulls = len(motions) + 1
   seen = [str(event.symbol) for event in events[-len(motions) - nulls :]]
@@ -186,6 +194,19 @@ def _frame(events: Sequence[receiver.Event], bits: str) -> list[str]:
     f'frame: not the {len(motions) + nulls} events of {bits} with their {nulls}'
     f' nulls: {" ".join(seen)}'
   ]
+
+
+def _words(
+  scene: scenario.Scenario, words: Sequence[tuple[int, ...]], bits: str
+) -> list[str]:
+  """Whether frames that were read as a whole are those of a message."""
+  agreed = scene.agreement
+  cut = (bits,) if agreed.packets is None else agreed.packets.split(bits)
+  sent = {agreed.word(each) for each in cut}
+  read = {*words[-1:]} if agreed.packets is None else {*words}
+  if read == sent:
+    return []
+  return [f'frame: the words of {bits} are {sorted(sent)}: got {sorted(read)}']
 
 
 def _fly(

@@ -8,6 +8,7 @@ from absl import flags
 
 from waggle_tasks import scenario
 from waggle_tasks.experiments.record import scenario_fields
+from waggle_tasks.protocol import packets
 
 # Flags defined here belong to the launcher that asks for them.
 flags.disclaim_key_flags()
@@ -27,6 +28,9 @@ def define() -> None:
         flags.DEFINE_integer(name, default, text)
       case _:
         flags.DEFINE_float(name, default, text)
+  flags.DEFINE_string(
+    'text', None, 'A text that is sent in UTF-8, in place of --bits.'
+  )
 
 
 def _help(text: str, known: Container[str]) -> str:
@@ -51,7 +55,12 @@ def read(
 
 def given() -> dict[str, Any]:
   """What the flags that were given say."""
-  return {n: v for n, v in values().items() if flags.FLAGS[n].present}
+  said = {n: v for n, v in values().items() if flags.FLAGS[n].present}
+  if flags.FLAGS['text'].value is None:
+    return said
+  if 'bits' in said:
+    raise packets.PacketError('`text` must not be given beside `bits`')
+  return {**said, 'bits': packets.text_bits(flags.FLAGS['text'].value)}
 
 
 def values() -> dict[str, Any]:

@@ -46,9 +46,9 @@ def draw(
   body = [
     _head(rows, name),
     _envelope(maps),
-    _failures(envelope.failures(rows)),
+    failures(envelope.failures(rows)),
     *map(_table, maps),
-    _origin(origin),
+    made_by(origin),
   ]
   return document.page(f'{name} \u2013 waggle sweep', body)
 
@@ -105,11 +105,12 @@ def _envelope(maps: Sequence[envelope.Panel]) -> markup.Markup:
   )
 
 
-def _failures(failures: Sequence[envelope.Failure]) -> markup.Markup | None:
-  if not failures:
+def failures(found: Sequence[envelope.Failure]) -> markup.Markup | None:
+  """What failed, with the commands that repeat it."""
+  if not found:
     return None
   items = []
-  shown = failures[:_MOST_FAILURES]
+  shown = found[:_MOST_FAILURES]
   for row, members in itertools.groupby(shown, lambda each: each.row):
     reasons = (
       tag('div', tag('b', each.observer), f': {each.reason}')
@@ -117,7 +118,7 @@ def _failures(failures: Sequence[envelope.Failure]) -> markup.Markup | None:
     )
     name = tag('b', row.case)
     items.append(tag('li', name, *reasons, tag('pre', repeat(row))))
-  more = len(failures) - len(shown)
+  more = len(found) - len(shown)
   return tag(
     'section',
     tag('h2', 'What failed'),
@@ -157,7 +158,8 @@ def _table(panel: envelope.Panel) -> markup.Markup:
   )
 
 
-def _origin(origin: dict | None) -> markup.Markup | None:
+def made_by(origin: dict | None) -> markup.Markup | None:
+  """What made results; see `write`."""
   if origin is None:
     return None
   versions = ', '.join(f'{n} {v}' for n, v in origin['versions'].items())

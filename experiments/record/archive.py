@@ -95,10 +95,9 @@ class Run:
     bits = payload.Payload.from_bits(
       scene['payload'], payload.Units(**scene['units'])
     )
-    known = self.config.agreement
     performance = controls.perform(
-      scene['control'], bits, scene['seed'], known.codebook, known.pauses,
-      scene['stop_s'],
+      scene['control'], bits, scene['seed'], self.config.agreement,
+      scene['stop_s'], scene.get('bits', ''), scene.get('repeat', 1),
     )  # fmt: skip
     return story.sent(performance, self.end_s)
 

@@ -2,7 +2,8 @@
 
 Fields of a scenario that are values of their own are spread out: the fields of
 its groups under their own names, its codebook and units as the numbers that
-they are made from. A group's own value, as the hover of a log, is one text.
+they are made from. A value of one's own, as the hover of a log or a language,
+is one text.
 """
 
 from collections.abc import Callable, Iterator, Mapping
@@ -15,9 +16,10 @@ import pathlib
 from typing import Any
 
 from waggle_tasks import kinds, plain, scenario
-from waggle_tasks.experiments.record import docs, hover_file
-from waggle_tasks.protocol import checks, gestures
+from waggle_tasks.experiments.record import docs, hover_file, language_file
+from waggle_tasks.protocol import checks, gestures, languages
 from waggle_tasks.protocol.symbols import Symbol
+from waggle_tasks.tasks import hover
 
 Values = Mapping[str, Any]
 
@@ -36,7 +38,7 @@ class Field:
     name: What its owner calls it.
     default: What it is by default.
     text: What the owner's docstring says of it.
-    form: What is made of its text, where it is a value of its own.
+    form: What is made of its text, where it may be a value of its own.
   """
 
   owner: str
@@ -48,16 +50,25 @@ class Field:
 
   def told(self, value: Any) -> Any:  # noqa: ANN401
     """A value of the owner as the table has it."""
-    if self.form is not None:
+    if self.form is not None and not isinstance(value, str):
       return _short(plain.to_plain(value))
     return math.degrees(value) if self.name.endswith('_rad') else value
 
   def taken(self, value: Any) -> Any:  # noqa: ANN401
     """A value of the table as the owner takes it."""
-    if self.form is not None:
+    if self.form is not None and not self.is_name(value):
       data = _long(self.name, value) if value else None
       return plain.from_plain(self.form | None, data, self.name)
     return math.radians(value) if self.name.endswith('_rad') else value
+
+  def is_name(self, text: str) -> bool:
+    """Whether a text is the name of a value, where values have names."""
+    return bool(self.default) and not is_own(text)
+
+
+def is_own(value: object) -> bool:
+  """Whether a value of the table is the text of a value of one's own."""
+  return isinstance(value, str) and value.startswith('{')
 
 
 def _short(data: Values | None) -> str:
@@ -106,7 +117,7 @@ def _values(
     owner = gestures.v_codebook
   texts, parameters = docs.sentences(owner), inspect.signature(owner).parameters
   for name in names or parameters:
-    members = kinds.members(kinds.hints(owner).get(name, Any)) if part else ()
+    members = kinds.members(kinds.hints(owner).get(name, Any))
     form = next(filter(dataclasses.is_dataclass, members), None)
     usual, text = parameters[name].default, texts.get(name, '')
     value = Field(owner.__name__, part, name, usual, text, form)
@@ -177,6 +188,8 @@ def flat(fields: Values) -> dict[str, Any]:
       out[part] = 'own'
     elif part == 'layout':
       out[part] = layout_name(value)
+    elif ('', part) in names:
+      out[part] = names['', part][1].told(value)
     elif isinstance(value, Mapping):
       for inner, number in value.items():
         name, field = names.get((part, inner), (inner, None))
@@ -211,20 +224,22 @@ def _v_sizes(codebook: gestures.Codebook) -> dict[str, float] | None:
 def parse(name: str, text: str) -> object:
   """The value that a text gives to a field, of the type of its default.
 
-  A log of hover may be given by its file.
+  A log of hover and a language of one's own may be given by their files.
 
   Raises:
     ScenarioError: if the name is not known or the text is no such value.
     LogError: if a file is no log of hover.
+    LanguageError: if a file is no language.
   """
   known, error = defaults(), scenario.ScenarioError
   checks.choice('field', name, [*known], error)
   field = table()[name]
+  if field.form is hover.Spectrum and text and not is_own(text):
+    return field.told(hover_file.read(pathlib.Path(text)))
+  if field.form is languages.Language and language_file.is_file(text):
+    return field.told(language_file.read(pathlib.Path(text)))
   if field.form is not None:
-    is_file = text and not text.startswith('{')
-    return field.told(
-      hover_file.read(pathlib.Path(text)) if is_file else field.taken(text)
-    )
+    return field.told(field.taken(text))
   kind = float if known[name] is None else type(known[name])
   try:
     return _WORDS[text.lower()] if kind is bool else kind(text)

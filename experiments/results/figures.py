@@ -1,6 +1,6 @@
 """The envelope as pictures for papers, by matplotlib."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 import importlib.util
 import io
 import itertools
@@ -17,6 +17,7 @@ from waggle_tasks.experiments.studies import case_rows
 
 if TYPE_CHECKING:
   from matplotlib import axes, image
+  from matplotlib import figure as figure_lib
 
 NEEDED = "need matplotlib: pip install 'waggle-tasks[analysis]'"
 MISSING = (
@@ -51,22 +52,12 @@ def draw(
   Raises:
     FigureError: without matplotlib.
   """
-  if not can_draw():
-    raise FigureError(MISSING)
-  import matplotlib as mpl
-  from matplotlib import figure as figure_lib
-  from matplotlib import patches
-
   columns = min(len(panels), 2)
   lines = math.ceil(len(panels) / columns)
   width = max(len(panels[0].acrosses), 4) * _CELL_IN[0] + _MARGIN_IN[0]
   height = len(panels[0].downs) * _CELL_IN[1] + _MARGIN_IN[1]
-  # Letters stay letters, and equal maps give equal files.
-  settings: Any = {'svg.fonttype': 'none', 'svg.hashsalt': 'waggle'}
-  with mpl.rc_context(settings):
-    figure = figure_lib.Figure(
-      (columns * width + 1, lines * height), layout='constrained'
-    )
+
+  def paint(figure: 'figure_lib.Figure') -> None:
     places = figure.subplots(lines, columns, squeeze=False)
     drawn = [
       _panel(panel, axis)
@@ -77,18 +68,64 @@ def draw(
     bar = figure.colorbar(drawn[-1], ax=places, shrink=0.8)
     bar.set_label('share of exposures that were right')
     if any(_unflown(panel) for panel in panels):
-      # A sample of it beside the words: white could be taken for a share.
-      sample = patches.Patch(facecolor='w', edgecolor='0.5', hatch='////')
-      figure.legend(
-        handles=[sample], labels=['not flown'], loc='outside lower right'
-      )
+      _explain_white(figure)
+
+  size_in = columns * width + 1, lines * height
+  return write(paint, folder, case_rows.FIGURES, size_in, MISSING, _DPI)
+
+
+def write(
+  paint: Callable[['figure_lib.Figure'], None],
+  folder: pathlib.Path,
+  names: Sequence[str],
+  size_in: tuple[float, float],
+  missing: str,
+  dpi: int = 100,
+) -> list[pathlib.Path]:
+  """Writes one picture twice, as SVG and as PNG.
+
+  Args:
+    paint: Draws it.
+    folder: Where it is put, which is made where there is none.
+    names: The names of its two files.
+    size_in: Its width and height.
+    missing: What is said where matplotlib is not.
+    dpi: How fine the PNG is.
+
+  Returns:
+    The files.
+
+  Raises:
+    FigureError: without matplotlib.
+  """
+  if not can_draw():
+    raise FigureError(missing)
+  import matplotlib as mpl
+  from matplotlib import figure as figure_lib
+
+  # Letters stay letters, and equal pictures give equal files.
+  settings: Any = {'svg.fonttype': 'none', 'svg.hashsalt': 'waggle'}
+  with mpl.rc_context(settings):
+    figure = figure_lib.Figure(size_in, layout='constrained')
+    paint(figure)
     vectors, painted = io.BytesIO(), io.BytesIO()
     figure.savefig(vectors, format='svg', metadata={'Date': None})
-    figure.savefig(painted, format='png', dpi=_DPI)
+    figure.savefig(painted, format='png', dpi=dpi)
+  folder.mkdir(parents=True, exist_ok=True)
   return [
     files.replace(folder / name, data.getvalue())
-    for name, data in zip(case_rows.FIGURES, (vectors, painted), strict=True)
+    for name, data in zip(names, (vectors, painted), strict=True)
   ]
+
+
+def _explain_white(figure: 'figure_lib.Figure') -> None:
+  """A sample of it beside the words: white could be taken for a share."""
+  from matplotlib import patches
+
+  sample = patches.Patch(facecolor='w', edgecolor='0.5', hatch='////')
+  figure.legend(
+    handles=[sample], labels=['not flown'], loc='outside lower right'
+  )
 
 
 def _unflown(panel: envelope.Panel) -> list[tuple[object, object]]:

@@ -1,21 +1,19 @@
 """Hovers as a picture: how strong they are by frequency, and some time."""
 
 from collections.abc import Mapping
-import io
 import pathlib
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from waggle_tasks.experiments.machine import files
 from waggle_tasks.experiments.results import figures, hover_measure
 from waggle_tasks.tasks import hover
 
 if TYPE_CHECKING:
   from matplotlib import axes
+  from matplotlib import figure as figure_lib
 
 NAMES = 'hover.svg', 'hover.png'
-_DPI = 100
 _SIZE_IN = 9.0, 2.2  # Width of all, height of a line.
 _SHOWN_S = 20.0
 _RATE_HZ = 25.0
@@ -41,16 +39,8 @@ def draw(
   Raises:
     FigureError: without matplotlib.
   """
-  if not figures.can_draw():
-    raise figures.FigureError(f'Pictures of hover {figures.NEEDED}.')
-  import matplotlib as mpl
-  from matplotlib import figure as figure_lib
 
-  settings: Any = {'svg.fonttype': 'none', 'svg.hashsalt': 'waggle'}
-  with mpl.rc_context(settings):
-    figure = figure_lib.Figure(
-      (_SIZE_IN[0], _SIZE_IN[1] * len(spectra)), layout='constrained'
-    )
+  def paint(figure: 'figure_lib.Figure') -> None:
     places = figure.subplots(len(spectra), 3, squeeze=False)
     for line, (name, spectrum) in zip(places, spectra.items(), strict=True):
       _bands(line[0], pathlib.PurePath(name).name, spectrum)
@@ -59,14 +49,11 @@ def draw(
       *places[0][0].get_legend_handles_labels(), loc='outside upper center',
       ncols=len(_LINES),
     )  # fmt: skip
-    vectors, painted = io.BytesIO(), io.BytesIO()
-    figure.savefig(vectors, format='svg', metadata={'Date': None})
-    figure.savefig(painted, format='png', dpi=_DPI)
-  folder.mkdir(parents=True, exist_ok=True)
-  return [
-    files.replace(folder / name, data.getvalue())
-    for name, data in zip(NAMES, (vectors, painted), strict=True)
-  ]
+
+  size_in = _SIZE_IN[0], _SIZE_IN[1] * len(spectra)
+  return figures.write(
+    paint, folder, NAMES, size_in, f'Pictures of hover {figures.NEEDED}.'
+  )
 
 
 def _bands(axis: 'axes.Axes', name: str, spectrum: hover.Spectrum) -> None:

@@ -24,6 +24,7 @@ SYMBOLS = {
   Symbol.ZERO: GREEN,
   Symbol.ONE: ORANGE,
   Symbol.END: PURPLE,
+  Symbol.LEVEL: GREEN,
   Symbol.UNKNOWN: VERMILLION,
 }
 # Brightness above which black letters read better than white ones.

@@ -88,11 +88,13 @@ def right_line(right: int, exposures: int) -> str:
   )
 
 
-def event_line(name: str, events: int, exposures: int) -> str:
+def event_line(
+  name: str, events: int, exposures: int, units: str = 'exposures'
+) -> str:
   """How often something happened that must not, with its limit."""
   limit = intervals.upper_limit(events, exposures)
   return (
-    f'{name}: {events} in {exposures} exposures; at most {limit:.3%}'
+    f'{name}: {events} in {exposures} {units}; at most {limit:.3%}'
     ' (one-sided 95 % limit, Clopper-Pearson)'
   )
 

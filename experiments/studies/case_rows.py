@@ -20,6 +20,7 @@ _OF_FLIGHTS, _OF_REPLAYS = ('seen_angle_deg', 'seen_distance_m'), ('spoilt',)
 JOURNAL, RESULTS, TABLE = 'journal.jsonl', 'results.jsonl', 'results.csv'
 PROVENANCE, SUMMARY = 'provenance.json', 'summary.txt'
 FIGURES = 'envelope.svg', 'envelope.png'
+LINK_FIGURES = 'link.svg', 'link.png'
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)

@@ -68,9 +68,10 @@ def shown(
   done = 0
   lengths = {name: ticks(each_s) for name, each_s in lengths_s.items()}
   form = _FORM + ' {remaining}]'
-  with seconds_bar(
-    sum(lengths_s.values()), smoothing=0, bar_format=form
-  ) as bar:
+  # The sum of whole ticks: that of seconds may round to less, and tqdm forgets
+  # the total of a bar that goes beyond it.
+  total_s = sum(lengths.values()) / agreement.STEPS_HZ
+  with seconds_bar(total_s, smoothing=0, bar_format=form) as bar:
     for each in news:
       name, before = each.job.name, flown.get(each.job.name, 0)
       if isinstance(each, pool.Advance):

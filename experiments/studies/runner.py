@@ -9,7 +9,7 @@ import io
 import pathlib
 from typing import Any, Generic, TypeVar
 
-from waggle_tasks import suites
+from waggle_tasks import scenario, suites
 from waggle_tasks.experiments.episodes import identity as identity_lib
 from waggle_tasks.experiments.episodes import outside
 from waggle_tasks.experiments.machine import files
@@ -57,6 +57,11 @@ class Study(abc.ABC, Generic[_Case, _Row]):
   def rank(self, case: _Case) -> float:
     """Cases begin in this order: the longest first, to end together."""
     return -case.scene.episode_s * case.scene.observers
+
+  def reader(self, case: _Case) -> str:
+    """The receiver of a case."""
+    del case
+    return self.receiver_name
 
   def told(self, flown: int, active: Sequence[str]) -> str:
     """The words before the bar: who is under way, or how many were flown."""
@@ -122,8 +127,7 @@ def run(
     SourceError: if sources changed meanwhile.
     UnknownSourceError: if code from outside has none.
   """
-  scenes = (case.scene for case in study.cases)
-  foreign = outside.paths(study.receiver_name, scenes)
+  foreign = _foreign(study)
   start = provenance.Start.now(command, foreign)
   own = provenance.deciding_hashes()
   sources = own | source_files.hashes(foreign)
@@ -132,7 +136,7 @@ def run(
   shows = 1 + study.replays
   more = f' {study.replays} replays' if study.replays else ''
   identities = {
-    case.name: identity_lib.of(case.scene, study.receiver_name, digest) + more
+    case.name: identity_lib.of(case.scene, study.reader(case), digest) + more
     for case in study.cases
   }
   names = case_rows.RESULTS, case_rows.TABLE, *study.files
@@ -162,6 +166,17 @@ def run(
     _write(study, folder, rows)
     study.end(folder, rows, start, bool(jobs))
   return rows
+
+
+def _foreign(study: Study[_Case, _Row]) -> dict[str, pathlib.Path]:
+  """The files of code from outside, of all receivers and scenarios."""
+  scenes: dict[str, list[scenario.Scenario]] = {}
+  for case in study.cases:
+    scenes.setdefault(study.reader(case), []).append(case.scene)
+  out: dict[str, pathlib.Path] = {}
+  for name, watched in scenes.items():
+    out |= outside.paths(name, watched)
+  return out
 
 
 def _write(

@@ -30,12 +30,14 @@ class Sample:
     repeat: Which of the cell's episodes, from 0.
     values: Every value of the scenario, see `scenario_fields`.
     scene: The scenario.
+    receiver: Who reads it; empty for the receiver of the study.
   """
 
   cell: Mapping[str, Any]
   repeat: int
   values: Mapping[str, Any]
   scene: scenario_lib.Scenario
+  receiver: str = ''
 
   @property
   def name(self) -> str:
@@ -79,6 +81,10 @@ def grid(texts: Sequence[str]) -> dict[str, list[object]]:
     if name in out:
       raise SweepError(f'`grid` must name a field once: got {name} again')
     values = [scenario_fields.parse(name, each) for each in listed.split(',')]
+    if any(map(scenario_fields.is_own, values)):
+      raise SweepError(
+        f'`grid` must hold names for {name}: fly a sweep of each file'
+      )
     if len(set(values)) < len(values):
       raise SweepError(f'`grid` must give a value once: got {text!r}')
     out[name] = values
@@ -120,7 +126,7 @@ def cases(
   for values in itertools.product(*factors.values()):
     cell = dict(zip(factors, values, strict=True))
     try:
-      out += [_case(cell, base, repeat) for repeat in range(repeats)]
+      out += [draw(cell, base, repeat) for repeat in range(repeats)]
     except errors.WaggleError as error:
       raise SweepError(f'cell {cell_name(cell)}: {error}') from None
   return tuple(out)
@@ -145,9 +151,14 @@ def _num_bits(values: Mapping[str, Any]) -> int:
   return 1 + values['heading_bits'] + values['distance_bits']
 
 
-def _case(
+def draw(
   cell: Mapping[str, Any], base: Mapping[str, Any], repeat: int
 ) -> Sample:
+  """One case, with the seed and the payload of its own; see `cases`.
+
+  Raises:
+    WaggleError: if the scenario breaks a rule.
+  """
   values = {**base, **cell}
   drawn = hashlib.sha256(_seed_text(values, repeat).encode()).digest()
   values['seed'] = int.from_bytes(drawn[:4], 'big')

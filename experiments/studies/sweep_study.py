@@ -26,7 +26,7 @@ class Sweep(runner.Study[sweep_cases.Sample, case_rows.SweepRow]):
   """The cases of a sweep."""
 
   kind = 'sweep'
-  files = (
+  files: tuple[str, ...] = (
     case_rows.JOURNAL, case_rows.PROVENANCE, case_rows.SUMMARY, archive.PAGE,
     *case_rows.FIGURES,
   )  # fmt: skip
@@ -34,6 +34,10 @@ class Sweep(runner.Study[sweep_cases.Sample, case_rows.SweepRow]):
   def rank(self, case: sweep_cases.Sample) -> float:
     """A repeat of every cell before the next: the whole map is soon seen."""
     return case.repeat
+
+  def reader(self, case: sweep_cases.Sample) -> str:
+    """Its own, or that of the sweep."""
+    return case.receiver or self.receiver_name
 
   def told(self, flown: int, active: Sequence[str]) -> str:
     """How many cases were flown."""
@@ -64,7 +68,7 @@ class Sweep(runner.Study[sweep_cases.Sample, case_rows.SweepRow]):
   ) -> pool.Job:
     """Flies a case and makes its row."""
     del command, folder
-    arguments = case, self.receiver_name, identity, self.replays
+    arguments = case, self.reader(case), identity, self.replays
     return pool.Job(case.name, sweep_flight.fly, arguments)
 
   @contextlib.contextmanager

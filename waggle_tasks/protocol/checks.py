@@ -9,6 +9,7 @@ from collections.abc import Callable, Mapping, Sequence
 import dataclasses
 import math
 import numbers
+from typing import TypeGuard
 
 import numpy as np
 
@@ -82,6 +83,58 @@ def integer(
       f'`{field}` must be between {minimum} and {maximum}: got {plain!r}'
     )
   return plain
+
+
+def whole_choice(
+  field: str,
+  value: int,
+  choices: Sequence[int],
+  error: type[errors.WaggleError],
+) -> int:
+  """Refuses a value that is not one of some integers, and lists them.
+
+  Returns:
+    The value as a plain int.
+
+  Raises:
+    WaggleError: of type `error`, naming the field, the value and the choices.
+  """
+  whole = isinstance(value, numbers.Integral) and not isinstance(value, bool)
+  if not whole or value not in choices:
+    raise error(f'`{field}` must be one of {[*choices]}: got {value!r}')
+  return int(value)
+
+
+def is_bits(value: object) -> TypeGuard[str]:
+  """Whether a value is text of nothing but the characters 0 and 1."""
+  return isinstance(value, str) and not set(value) - {*'01'}
+
+
+def bits(
+  field: str,
+  value: str,
+  fewest: int,
+  most: int | None,
+  error: type[errors.WaggleError],
+) -> None:
+  """Refuses what is not text of so many characters of 0 and 1.
+
+  Args:
+    field: Name of the field, as its user writes it.
+    value: The value to check.
+    fewest: How many there must be at least.
+    most: How many there may be at most; None for any number.
+    error: What to raise.
+
+  Raises:
+    WaggleError: of type `error`, naming the field, the rule and the value.
+  """
+  fits = is_bits(value) and fewest <= len(value) <= (most or len(value))
+  if not fits:
+    number = f'{fewest} or more' if most is None else f'{fewest} to {most}'
+    rule = f'{fewest if fewest == most else number} characters of 0 and 1'
+    got = f'{len(value)} of them' if is_bits(value) else f'{value!r}'
+    raise error(f'`{field}` must be {rule}: got {got}')
 
 
 def switch(field: str, value: bool, error: type[errors.WaggleError]) -> bool:

@@ -4,7 +4,7 @@ Figures of about the size, the duration and the pauses of gestures, and frames
 that are not whole or not in order. A receiver must read nothing in any.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 import dataclasses
 import math
 
@@ -170,77 +170,92 @@ def _timed(corners: Sequence[np.ndarray], rng: np.random.RandomState) -> Figure:
   return Figure(np.array(corners), max(leg_s, slowest_s))
 
 
-def _bits(rng: np.random.RandomState, count: int) -> list[Symbol]:
-  return [BITS[rng.randint(2)] for _ in range(count)]
+Tokens = list[Symbol | int]
 
 
-def _swapped(rng: np.random.RandomState, count: int) -> list[Symbol]:
+@dataclasses.dataclass(frozen=True)
+class Words:
+  """What frames are made of.
+
+  Attributes:
+    draw: Draws the symbols of a message.
+    size: How many symbols there are.
+  """
+
+  draw: Callable[[np.random.RandomState], Sequence[int]]
+  size: int = len(BITS)
+
+
+def _swapped(rng: np.random.RandomState, words: Words) -> Tokens:
   """The symbols of a message in an order that is none."""
   if rng.randint(2):
-    return [Symbol.END, *_bits(rng, count), Symbol.START]
-  motions = [Symbol.START, *_bits(rng, count), Symbol.END]
+    return [Symbol.END, *words.draw(rng), Symbol.START]
+  motions: Tokens = [Symbol.START, *words.draw(rng), Symbol.END]
   while motions[0] is Symbol.START and motions[-1] is Symbol.END:
     rng.shuffle(motions)
-  return [Symbol(each) for each in motions]
+  return motions
 
 
-def _repeated(rng: np.random.RandomState, count: int) -> list[Symbol]:
-  """A bit too many, or everything twice and too few bits."""
-  bits = _bits(rng, count)
+def _repeated(rng: np.random.RandomState, words: Words) -> Tokens:
+  """A symbol too many, or everything twice and too few symbols."""
+  word = words.draw(rng)
   if rng.randint(2):
-    twice = rng.randint(count)
-    return [Symbol.START, *bits[: twice + 1], *bits[twice:], Symbol.END]
-  once = [Symbol.START, *bits[:2], Symbol.END]
+    twice = rng.randint(len(word))
+    return [Symbol.START, *word[: twice + 1], *word[twice:], Symbol.END]
+  once: Tokens = [Symbol.START, *word[:2], Symbol.END]
   return [each for symbol in once for each in (symbol, symbol)]
 
 
-def _half_frame(rng: np.random.RandomState, count: int) -> list[Symbol]:
+def _half_frame(rng: np.random.RandomState, words: Words) -> Tokens:
   """The first half of a message, and then of another one."""
-  bits, half = _bits(rng, count), count // 2
-  return [Symbol.START, *bits[:half], Symbol.START, *bits[half:]]
+  word = words.draw(rng)
+  half = len(word) // 2
+  return [Symbol.START, *word[:half], Symbol.START, *word[half:]]
 
 
-def _five_bits(rng: np.random.RandomState, count: int) -> list[Symbol]:
-  """A message with a bit too few."""
-  return [Symbol.START, *_bits(rng, count)[1:], Symbol.END]
+def _five_bits(rng: np.random.RandomState, words: Words) -> Tokens:
+  """A message with a symbol too few."""
+  return [Symbol.START, *words.draw(rng)[1:], Symbol.END]
 
 
-def _seven_bits(rng: np.random.RandomState, count: int) -> list[Symbol]:
-  """A message with a bit too many: with one hidden, a message is left."""
-  return [Symbol.START, *_bits(rng, count), BITS[rng.randint(2)], Symbol.END]
+def _seven_bits(rng: np.random.RandomState, words: Words) -> Tokens:
+  """A message with a symbol too many: with one hidden, a message is left."""
+  word = words.draw(rng)
+  return [Symbol.START, *word, rng.randint(words.size), Symbol.END]
 
 
 def _split(
-  rng: np.random.RandomState, count: int
-) -> tuple[list[Symbol], list[Symbol]]:
-  """The bits of a message in two parts, neither of them empty."""
-  bits, first = _bits(rng, count), rng.randint(1, count)
-  return bits[:first], bits[first:]
+  rng: np.random.RandomState, words: Words
+) -> tuple[Sequence[int], Sequence[int]]:
+  """The symbols of a message in two parts, neither of them empty."""
+  word = words.draw(rng)
+  first = rng.randint(1, len(word))
+  return word[:first], word[first:]
 
 
-def _begun_anew(rng: np.random.RandomState, count: int) -> list[Symbol]:
+def _begun_anew(rng: np.random.RandomState, words: Words) -> Tokens:
   """Broken off and begun anew: a message, with the second START hidden."""
-  before, after = _split(rng, count)
+  before, after = _split(rng, words)
   return [Symbol.START, *before, Symbol.START, *after, Symbol.END]
 
 
-def _run_together(rng: np.random.RandomState, count: int) -> list[Symbol]:
+def _run_together(rng: np.random.RandomState, words: Words) -> Tokens:
   """Two short dances: a message, with END and START between them hidden."""
-  before, after = _split(rng, count)
-  first = [Symbol.START, *before, Symbol.END]
+  before, after = _split(rng, words)
+  first: Tokens = [Symbol.START, *before, Symbol.END]
   return [*first, Symbol.START, *after, Symbol.END]
 
 
-def _start_repeated(rng: np.random.RandomState, count: int) -> list[Symbol]:
-  """START again and again, and a bit too few."""
-  starts = [Symbol.START] * rng.randint(2, 4)
-  return [*starts, *_bits(rng, count)[1:], Symbol.END]
+def _start_repeated(rng: np.random.RandomState, words: Words) -> Tokens:
+  """START again and again, and a symbol too few."""
+  starts: Tokens = [Symbol.START] * rng.randint(2, 4)
+  return [*starts, *words.draw(rng)[1:], Symbol.END]
 
 
-def _end_first(rng: np.random.RandomState, count: int) -> list[Symbol]:
+def _end_first(rng: np.random.RandomState, words: Words) -> Tokens:
   """END where START should be, and sometimes START where END should be."""
   last = (Symbol.START, Symbol.END)[rng.randint(2)]
-  return [Symbol.END, *_bits(rng, count), last]
+  return [Symbol.END, *words.draw(rng), last]
 
 
 _FIGURE_MAKERS = {
@@ -263,6 +278,17 @@ _FRAME_MAKERS = {
 DECOYS = (*_FIGURE_MAKERS, *_FRAME_MAKERS)
 
 
+def figures(name: str, rng: np.random.RandomState) -> list[schedule.Path]:
+  """The paths of a decoy that is of figures; empty for one of symbols."""
+  make = _FIGURE_MAKERS.get(name)
+  return [] if make is None else make(rng)
+
+
+def tokens(name: str, rng: np.random.RandomState, words: Words) -> Tokens:
+  """The motions of a decoy that is of symbols: START, symbols, END."""
+  return _FRAME_MAKERS[name](rng, words)
+
+
 def perform(
   name: str,
   seed: int,
@@ -270,7 +296,7 @@ def perform(
   pauses: timing.Timing,
   num_bits: int = payload.Units().num_bits,
 ) -> schedule.Schedule:
-  """A decoy laid out in time.
+  """A decoy of the paper's gestures, laid out in time.
 
   Args:
     name: One of `DECOYS`.
@@ -283,7 +309,11 @@ def perform(
     The schedule.
   """
   rng = np.random.RandomState(seed)
-  if name in _FIGURE_MAKERS:
-    return schedule.lay_out(_FIGURE_MAKERS[name](rng), pauses)
-  symbols = tuple(_FRAME_MAKERS[name](rng, num_bits))
+  if paths := figures(name, rng):
+    return schedule.lay_out(paths, pauses)
+  words = Words(lambda rng: [rng.randint(2) for _ in range(num_bits)])
+  symbols = tuple(
+    each if isinstance(each, Symbol) else BITS[each]
+    for each in tokens(name, rng, words)
+  )
   return schedule.broadcast(symbols, codebook, pauses)

@@ -5,7 +5,7 @@ then see is another gesture. So a dance that asks for more is refused before it
 is flown.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 import dataclasses
 import functools
 import math
@@ -13,7 +13,7 @@ import math
 import numpy as np
 
 from waggle_tasks import errors
-from waggle_tasks.protocol import gestures
+from waggle_tasks.protocol import gestures, levels
 from waggle_tasks.protocol import schedule as schedule_lib
 
 GRAVITY_MPS2 = 9.81
@@ -67,20 +67,20 @@ class LimitError(errors.WaggleError):
   """A dance that the vehicle cannot fly."""
 
 
-def check_codebook(
-  codebook: gestures.Codebook, limits: Limits = Limits()
+def check_motions(
+  motions: Iterable[schedule_lib.Path], limits: Limits = Limits()
 ) -> None:
-  """Refuses gestures that the vehicle cannot fly.
+  """Refuses motions that the vehicle cannot fly.
 
   Args:
-    codebook: The gestures.
-    limits: What it can fly.
+    motions: What a language is made of.
+    limits: What the vehicle can fly.
 
   Raises:
-    LimitError: naming the gesture, the rule and what it asks for.
+    LimitError: naming the motion, the rule and what it asks for.
   """
-  for gesture in codebook.gestures:
-    _check_path(f'gesture {gesture.symbol}', gesture, limits)
+  for path in motions:
+    _check_path(f'gesture {path.symbol}', path, limits)
 
 
 def check_schedule(
@@ -114,24 +114,27 @@ def check_schedule(
 
 
 def _check_path(name: str, path: schedule_lib.Path, limits: Limits) -> None:
-  if isinstance(path, gestures.Gesture):  # It can be looked up.
-    speed, sideways, up, down, jerk, haste = _known_peaks(path)
-  else:
-    speed, sideways, up, down, jerk, haste = _peaks(path)
-  if not haste <= _REST_MPS:
+  most = peaks(path)
+  if not most.ends_mps <= _REST_MPS:
     raise LimitError(
-      f'`{name}` must begin and end at rest: got {haste:.2f} m/s there'
+      f'`{name}` must begin and end at rest: got {most.ends_mps:.2f} m/s there'
     )
   rules = (
-    ('accelerate upwards by at most', up, limits.up_mps2, 'm/s^2', 2),
+    ('accelerate upwards by at most', most.up_mps2, limits.up_mps2, 'm/s^2', 2),
     (
-      'accelerate sideways by at most', sideways, limits.sideways_mps2,
+      'accelerate sideways by at most', most.sideways_mps2,
+      limits.sideways_mps2, 'm/s^2', 2,
+    ),
+    (
+      'accelerate downwards by at most', most.down_mps2, limits.down_mps2,
       'm/s^2', 2,
     ),
-    ('accelerate downwards by at most', down, limits.down_mps2, 'm/s^2', 2),
-    ('fly along an axis at no more than', speed, limits.speed_mps, 'm/s', 1),
     (
-      'change its acceleration sideways by at most', jerk,
+      'fly along an axis at no more than', most.speed_mps, limits.speed_mps,
+      'm/s', 1,
+    ),
+    (
+      'change its acceleration sideways by at most', most.sideways_mps3,
       limits.sideways_mps3, 'm/s^3', 3,
     ),
   )  # fmt: skip
@@ -147,20 +150,42 @@ def _check_path(name: str, path: schedule_lib.Path, limits: Limits) -> None:
       )
 
 
-def _peaks(path: schedule_lib.Path) -> tuple[float, ...]:
-  """The most that a path asks for.
+@dataclasses.dataclass(frozen=True)
+class Peaks:
+  """The most that a path asks for, along each axis.
 
-  Returns:
-    Speed, acceleration sideways, upwards and downwards, how fast that sideways
-    changes, each along an axis, and the speed at its ends.
+  Attributes:
+    speed_mps: Speed.
+    sideways_mps2: Acceleration sideways.
+    up_mps2: Acceleration upwards.
+    down_mps2: Acceleration downwards.
+    sideways_mps3: How fast the acceleration sideways changes.
+    ends_mps: Speed where it begins and ends.
   """
+
+  speed_mps: float
+  sideways_mps2: float
+  up_mps2: float
+  down_mps2: float
+  sideways_mps3: float
+  ends_mps: float
+
+
+def peaks(path: schedule_lib.Path) -> Peaks:
+  """The most that a path asks for."""
+  if isinstance(path, gestures.Gesture | levels.Stroke):  # To be looked up.
+    return _known_peaks(path)
+  return _peaks(path)
+
+
+def _peaks(path: schedule_lib.Path) -> Peaks:
   count = max(_MOMENTS, math.ceil(path.duration_s / _STEP_S))
   times_s = np.linspace(0.0, path.duration_s, count + 1)
   moments = [[*map(_whole, path.motion(time_s))] for time_s in times_s]
   places, rates, seconds = np.moveaxis(np.array(moments), 1, 0)  # (T, 3) each
   # What it says of its speed, and what it does.
   steps = np.abs(np.diff(places, axis=0)).max() / times_s[1]
-  return (
+  return Peaks(
     float(max(np.abs(rates).max(), steps)),
     float(np.abs(seconds[:, ::2]).max()),
     float(seconds[:, 1].max()),

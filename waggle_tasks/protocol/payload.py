@@ -103,8 +103,7 @@ class Payload:
     Raises:
       PayloadError: if `bits` is not so many characters of 0 and 1.
     """
-    is_bits = isinstance(bits, str) and not set(bits) - {*'01'}
-    if not is_bits or len(bits) != units.num_bits:
+    if not checks.is_bits(bits) or len(bits) != units.num_bits:
       example = f'{2:0{units.num_bits}b}'
       raise PayloadError(
         f'`payload` must be {units.num_bits} characters of 0 and 1, such as'
@@ -173,3 +172,21 @@ class Payload:
     theta_rad = math.pi / 2 + self.heading * units.heading_step_rad
     reach_m = (-1) ** self.direction * self.distance * units.distance_unit_m
     return reach_m * np.array([math.cos(theta_rad), math.sin(theta_rad), 0.0])
+
+
+@dataclasses.dataclass(frozen=True)
+class Data:
+  """A message of any bits, which commands nothing.
+
+  Attributes:
+    bits: Characters of 0 and 1, one at least.
+  """
+
+  bits: str
+
+  def __post_init__(self) -> None:
+    bits = self.bits
+    if not isinstance(bits, str) or not bits or set(bits) - {*'01'}:
+      raise PayloadError(
+        f'`bits` must be characters of 0 and 1, one at least: got {bits!r}'
+      )

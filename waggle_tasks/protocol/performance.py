@@ -16,11 +16,13 @@ class Performance:
     stop_s: When it is cut short, in seconds of simulation time; infinite when
       nothing cuts it short.
     says: The message that all of it says; None when it says nothing.
+    once_s: When it has said so for the first time; None for its end.
   """
 
   schedule: schedule_lib.Schedule = schedule_lib.Schedule(())
   stop_s: float = math.inf
-  says: payload.Payload | None = None
+  says: payload.Payload | payload.Data | None = None
+  once_s: float | None = None
 
   @property
   def end_s(self) -> float:
@@ -28,7 +30,12 @@ class Performance:
     return min(self.schedule.end_s, self.stop_s)
 
   @property
-  def message(self) -> payload.Payload | None:
+  def said_s(self) -> float:
+    """When a reader may have understood it, if it was not cut short before."""
+    return self.end_s if self.once_s is None else min(self.once_s, self.end_s)
+
+  @property
+  def message(self) -> payload.Payload | payload.Data | None:
     """What was said when it was flown whole, or None."""
     whole = 0 < self.schedule.end_s <= self.stop_s
     return self.says if whole else None

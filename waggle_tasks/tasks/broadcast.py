@@ -10,6 +10,7 @@ import numpy as np
 from waggle_tasks.arenas import flight_room
 from waggle_tasks.entities import observer, performer
 from waggle_tasks.protocol import agreement as agreement_lib
+from waggle_tasks.protocol import payload
 from waggle_tasks.tasks import (
   actions,
   avoidance,
@@ -138,7 +139,7 @@ class Broadcast(copies.Uncopied, steps.Framed):
   def _begin_flights(self) -> None:
     """Lets every observer wait at its place."""
     displacement_m, message = None, self._parts.performance.message
-    if message is not None:
+    if isinstance(message, payload.Payload):
       displacement_m = message.displacement_m(self.agreement.units)
     self._flights = flights.Flights(
       {n: np.array(self._fleet.homes[n].position_m) for n in self._observers},
@@ -243,7 +244,8 @@ class Broadcast(copies.Uncopied, steps.Framed):
     self._tell()
     self._contacts = tuple(sorted(self._touched))
     time_s = self._clock.time_s
-    authorised = self.sends_message and time_s >= self.performer.end_s
+    said_s = self._parts.performance.said_s
+    authorised = self.sends_message and time_s >= said_s
     # Whether it moved is a matter of what it was told, whether it has arrived
     # one of truth.
     moved = self._fleet.steady(physics, time_s, told=not authorised)
