@@ -27,9 +27,11 @@ def commanded(
       begin_m = run.positions_m[name][frame]
       target_m = np.array(event.target_m)
       if run.scenario['safety'] == 'avoid':
-        performer_m = run.positions_m['performer'][frame]
         target_m = safety.settled_m(
-          target_m, begin_m, [performer_m], _kept_m(run.scenario)
+          target_m,
+          run.positions_m[name][0],
+          [run.positions_m['performer'][0]],
+          _kept_m(run.scenario),
         )
       return begin_m, target_m
   return None

@@ -14,6 +14,7 @@ _POINTS = 12  # Of a ring.
 _ANGLES = 2 * math.pi / _POINTS * np.arange(_POINTS)
 _RING = np.stack([np.cos(_ANGLES), np.sin(_ANGLES)], axis=1)
 _BEYOND = 1.001 / math.cos(math.pi / _POINTS)  # So that its chords are clear.
+_MIDDLE = 0.3  # Of a spacing.
 _SAME_M = 1e-3
 
 
@@ -24,6 +25,9 @@ def free_m(
   spacing_m: float,
 ) -> np.ndarray:  # (D,)
   """The place nearest to a goal that is free; the goal itself if it is.
+
+  Of a goal near the middle of somebody who stays it is the place on the side of
+  the begin: which one is nearest would be a matter of chance there.
 
   Args:
     goal_m: Where a vehicle should be.
@@ -40,7 +44,7 @@ def free_m(
     return goal_m
   near = stayers[away_m < 3 * spacing_m]
   from_m = np.where(
-    (np.linalg.norm(goal - near, axis=1) > _SAME_M)[:, None],
+    (np.linalg.norm(goal - near, axis=1) > _MIDDLE * spacing_m)[:, None],
     goal - near, begin - near,
   )  # fmt: skip
   from_m /= np.maximum(np.linalg.norm(from_m, axis=1), _SAME_M)[:, None]
