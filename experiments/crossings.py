@@ -47,6 +47,8 @@ def main(argv: Sequence[str]) -> int:
   """Prints the table; returns the exit status."""
   del argv
   numbers = [_number(text) for text in _VEHICLES.value]
+  if not numbers:
+    raise errors.WaggleError('`vehicles` must be one number at least: got none')
   count = checks.integer(
     'count', _COUNT.value, len(numbers), 10**6, errors.WaggleError
   )
@@ -66,10 +68,15 @@ def _number(text: str) -> int:
   """A number of vehicles.
 
   Raises:
-    WaggleError: if the text is none.
+    WaggleError: if the text is none, or there cannot be so many.
   """
-  value = int(text) if text.isdecimal() else text
-  return checks.integer('vehicles', value, 2, 64, errors.WaggleError)  # type: ignore[arg-type]
+  try:
+    number = int(text)
+  except ValueError:
+    raise errors.WaggleError(
+      f'`vehicles` must be an integer: got {text!r}'
+    ) from None
+  return checks.integer('vehicles', number, 2, 64, errors.WaggleError)
 
 
 def _fly(

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from waggle_tasks import scenario
+from waggle_tasks.arenas import layouts
 from waggle_tasks.protocol import (
   agreement,
   flight,
@@ -17,7 +18,7 @@ from waggle_tasks.protocol import (
   performance,
   reference,
 )
-from waggle_tasks.tasks import avoidance, cells, detours, safety
+from waggle_tasks.tasks import avoidance, cells, detours, drift, safety
 
 Load = Callable[..., composer.Environment]
 LAW = avoidance.Law(0.18)
@@ -191,28 +192,28 @@ class Faked:
 
   def __init__(self, scene: scenario.Scenario, begin_s: float = 0.4) -> None:
     self._scene, self._begin_s = scene, begin_s
+    self._homes_m: list[np.ndarray] = []
     self._flights: list[flight.Flight] = []
 
   def __call__(self, observations: Sequence[dict]) -> list[np.ndarray]:
-    if not self._flights:
-      displacement_m = self._scene.message.displacement_m(self._scene.units)
-      self._flights = [
-        flight.Flight(
-          o['position_m'].copy(),
-          flight.goal_m(o['position_m'], displacement_m, self._scene.agreement),
-          self._begin_s,
-        )
-        for o in observations
-      ]
+    if not self._homes_m:
+      self._homes_m = [o['position_m'].copy() for o in observations]
     time_s = float(observations[0]['time_s'])
-    out = []
-    for each in self._flights:
-      wanted = reference.Reference.hover(each.begin_m)
-      if time_s > self._begin_s - 1e-6:
-        motion = each.motion(time_s + FRAME_S / 2)
-        wanted = reference.Reference(*motion, 0.0, each.goal_m)
-      out.append(wanted.to_array())
-    return out
+    if time_s < self._begin_s - 1e-6:
+      return [reference.Reference.hover(h).to_array() for h in self._homes_m]
+    if not self._flights:
+      self._flights = [self._flight(o['position_m']) for o in observations]
+    return [
+      reference.Reference(
+        *each.motion(time_s + FRAME_S / 2), 0.0, each.goal_m
+      ).to_array()
+      for each in self._flights
+    ]
+
+  def _flight(self, position_m: np.ndarray) -> flight.Flight:
+    way_m = self._scene.message.displacement_m(self._scene.units)
+    goal_m = flight.goal_m(position_m, way_m, self._scene.agreement)
+    return flight.Flight(position_m.copy(), goal_m, self._begin_s)
 
 
 @dataclasses.dataclass
@@ -236,12 +237,14 @@ class Told:
 def flown(load: Load, monkeypatch: pytest.MonkeyPatch) -> Callable[..., Told]:
   """Flies a scenario's message at once: its dance is taken as flown."""
 
-  def run(seconds: float = 25.0, **fields: object) -> Told:
+  def run(
+    seconds: float = 25.0, begin_s: float = 0.4, **fields: object
+  ) -> Told:
     scene = scenario.Scenario(duration_s=seconds, **fields)
     silent = performance.Performance()
     monkeypatch.setattr(scenario.Scenario, 'performance', silent)
     environment = load('broadcast', cameras=False, duration_s=seconds, **fields)
-    task, agent = environment.task, Faked(scene)
+    task, agent = environment.task, Faked(scene, begin_s)
     displacement_m = scene.message.displacement_m(scene.units)
     timestep, places, rewards = environment.reset(), [], 0.0
     for each, way in zip(
@@ -361,3 +364,105 @@ def test_an_unknown_safety_is_refused() -> None:
 def test_an_unknown_meaning_is_refused() -> None:
   with pytest.raises(payload.PayloadError, match='`meaning` must be one of'):
     payload.Units(meaning='wish')
+
+
+# With other languages, and with what commands nothing.
+
+
+def test_a_place_may_be_said_in_any_language() -> None:
+  place = payload.Units(meaning='place')
+  for language in ('swift', 'brisk'):
+    scene = scenario.Scenario(language=language, units=place, safety='avoid')
+    agreed = scene.agreement
+    assert agreed.units.meaning == 'place'
+    assert scene.performance.message == scene.message
+    sooner_s = scenario.Scenario(language=language).episode_s
+    assert scene.episode_s == sooner_s + scenario.AVOIDING_S
+
+
+def test_nobody_flies_into_a_dance_that_goes_on(load: Load) -> None:
+  """Who has read the first round waits for the end of the second."""
+  fields = {
+    'language': 'swift', 'repeat': 2, 'observers': 1, 'safety': 'avoid',
+    'distance_m': 0.5, 'payload': '000011',
+  }  # fmt: skip
+  scene = scenario.Scenario(**fields)
+  said_s, end_s = scene.performance.said_s, scene.performance.end_s
+  begin_s = math.ceil(said_s / FRAME_S) * FRAME_S
+  assert begin_s + 1 < end_s
+  environment = load('broadcast', cameras=False, **fields)
+  task, agent = environment.task, Faked(scene, begin_s)
+  timestep, places_m = environment.reset(), []
+  rewards = 0.0
+  while not timestep.last():
+    timestep = environment.step(agent(timestep.observation))
+    rewards += timestep.reward[0]
+    found = task.positions_m(environment.physics)
+    places_m.append([found['performer'], found['observer_1']])
+  ways_m = np.array(places_m)
+  before = round(end_s / FRAME_S) - 1
+  np.testing.assert_allclose(ways_m[:before, 1], ways_m[[0], 1], atol=1e-4)
+  away_m = np.linalg.norm(ways_m[:, 0] - ways_m[:, 1], axis=1)
+  assert away_m.min() > safety.MINIMUM_SPACING_M
+  assert rewards == 1
+
+
+def test_data_have_no_slots_and_move_nobody(load: Load) -> None:
+  units = payload.Units(meaning='place', slot_m=0.2)
+  environment = load(
+    'broadcast', cameras=False, language='swift', bits='1011001', observers=5,
+    units=units, safety='avoid', duration_s=1.0,
+  )  # fmt: skip
+  timestep, places_m = environment.reset(), []
+  holds = [
+    reference.Reference.hover(each['position_m'].copy()).to_array()
+    for each in timestep.observation
+  ]
+  while not timestep.last():
+    timestep = environment.step(holds)
+    assert timestep.reward == [0.0] * 5
+    found = environment.task.positions_m(environment.physics)
+    places_m.append([found[f'observer_{k}'] for k in range(1, 6)])
+  np.testing.assert_allclose(np.ptp(places_m, axis=0), 0, atol=1e-4)
+
+
+HOVER = drift.Drift(performer_hover='mocap', observer_hover='mocap')
+
+
+@pytest.mark.parametrize('seed', range(4))
+def test_a_place_beside_the_performer_is_found_while_all_hover(
+  seed: int, flown: Callable[..., Told]
+) -> None:
+  """A goal in the middle of the performer, but for how both hover."""
+  told = flown(
+    12.0, 3.0, **AT_PERFORMER, safety='avoid', drift=HOVER, seed=seed
+  )
+  assert told.rewards == [1.0]
+  off_m = told.targets_m[0] - (0, -HOVER.near_m - 0.2, 1.3)
+  assert np.linalg.norm(off_m) < 0.05
+  assert told.least_m() > safety.MINIMUM_SPACING_M
+
+
+@pytest.mark.parametrize('estimator', ['mocap', 'flow_deck'])
+def test_errors_and_hover_widen_what_is_kept(
+  estimator: str, flown: Callable[..., Told]
+) -> None:
+  fields = {
+    'observers': 4, 'safety': 'avoid', 'dynamics': 'rotors',
+    'estimator': estimator, 'drift': HOVER,
+    'units': payload.Units(meaning='place', slot_m=1.0),
+  }  # fmt: skip
+  kept_m = scenario.Scenario(**fields).kept_m
+  assert kept_m > safety.MINIMUM_SPACING_M + HOVER.near_m + 0.04
+  told = flown(14.0, 2.0, **fields)
+  assert told.least_m() > safety.MINIMUM_SPACING_M
+  off_m = np.linalg.norm(told.places_m[-1, 1:] - told.targets_m, axis=1)
+  assert off_m.max() < 0.1
+
+
+def test_who_stands_nearer_than_is_kept_beside_errors_is_refused() -> None:
+  with pytest.raises(layouts.LayoutError, match=r'must start at least 0\.3'):
+    scenario.Scenario(
+      distance_m=0.3, safety='avoid', dynamics='rotors', estimator='mocap',
+      drift=HOVER, observers=1,
+    )  # fmt: skip
