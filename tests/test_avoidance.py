@@ -57,6 +57,7 @@ def fly(
   goals_m: np.ndarray,
   stayers_m: np.ndarray = np.zeros((0, 3)),
   limit_s: float = 30.0,
+  frame_s: float = FRAME_S,
 ) -> Flown:
   """Flies points that do exactly what the law says, until all are there."""
   count, places, speeds = len(begins_m), begins_m, np.zeros_like(begins_m)
@@ -66,7 +67,7 @@ def fly(
   yields = np.ones((count, count - 1 + len(stayers_m)), bool)
   yields[:, count - 1 :] = False
   all_places, all_speeds = [places], [speeds]
-  for _ in range(round(limit_s / FRAME_S)):
+  for _ in range(round(limit_s / frame_s)):
     known = avoidance.Known(
       places,
       speeds,
@@ -75,8 +76,8 @@ def fly(
       np.concatenate([speeds[index], 0 * stay], axis=1),
       yields,
     )
-    after = avoidance.step(LAW, known, FRAME_S)
-    places, speeds = places + (speeds + after) * FRAME_S / 2, after
+    after = avoidance.step(LAW, known, frame_s)
+    places, speeds = places + (speeds + after) * frame_s / 2, after
     all_places.append(places)
     all_speeds.append(speeds)
     if np.linalg.norm(places - goals_m, axis=1).max() < 2e-3:
@@ -119,6 +120,15 @@ def test_all_arrive_and_nobody_comes_too_near(name: str) -> None:
   assert cells.length(flown.velocities_mps).max() < LAW.speed_mps + 1e-6
   change = cells.length(np.diff(flown.velocities_mps, axis=0)) / FRAME_S
   assert change.max() < LAW.acceleration_mps2 + 1e-6
+
+
+@pytest.mark.parametrize('rate_hz', [10.0, 125.0])
+@pytest.mark.parametrize('name', ['head on', 'through', 'five'])
+def test_at_any_rate(name: str, rate_hz: float) -> None:
+  begins_m, goals_m, stayers_m = CASES[name]
+  flown = fly(begins_m, goals_m, stayers_m, 10.0, 1 / rate_hz)
+  np.testing.assert_allclose(flown.places_m[-1], goals_m, atol=3e-3)
+  assert flown.least_m() > LAW.spacing_m - 2e-3
 
 
 def test_two_that_meet_pass_on_the_right() -> None:
@@ -179,6 +189,10 @@ def test_a_free_place_is_the_nearest_one() -> None:
   goal_m, begin_m = level([(0, 0), (0, -1)])
   found = detours.free_m(goal_m, begin_m, level([(0, 0)]), 0.2)
   np.testing.assert_allclose(found, (0, -0.2, 1.3), atol=1e-9)
+  for aside_m in (-0.02, 0.0, 0.02):  # It is not a matter of millimetres.
+    (about_m,) = level([(aside_m, 0.02)])
+    near_m = detours.free_m(about_m, begin_m, level([(0, 0)]), 0.2)
+    np.testing.assert_allclose(near_m, (0, -0.2, 1.3), atol=1e-9)
   found = detours.free_m(goal_m, begin_m, level([(0, 0.1)]), 0.2)
   np.testing.assert_allclose(found, (0, -0.1, 1.3), atol=1e-9)
   assert detours.free_m(goal_m, begin_m, level([(1, 0)]), 0.2) is goal_m
@@ -364,6 +378,32 @@ def test_an_unknown_safety_is_refused() -> None:
 def test_an_unknown_meaning_is_refused() -> None:
   with pytest.raises(payload.PayloadError, match='`meaning` must be one of'):
     payload.Units(meaning='wish')
+
+
+def test_who_has_not_read_is_flown_round_and_not_moved(load: Load) -> None:
+  """It is where its neighbour's way leads through."""
+  fields = {
+    'layout': 'line', 'observers': 2, 'spacing_m': 0.3, 'payload': '101011',
+    'language': 'swift', 'safety': 'avoid',
+  }  # fmt: skip
+  scene = scenario.Scenario(**fields)
+  begin_s = math.ceil(scene.performance.end_s / FRAME_S) * FRAME_S
+  environment = load('broadcast', cameras=False, **fields)
+  agent, rewards, ways_m = Faked(scene, begin_s), np.zeros(2), []
+  timestep = environment.reset()
+  hold = reference.Reference.hover(timestep.observation[1]['position_m'].copy())
+  for _ in range(round((begin_s + 12.0) / FRAME_S)):
+    asked, _ = agent(timestep.observation)
+    timestep = environment.step([asked, hold.to_array()])
+    rewards += timestep.reward
+    found = environment.task.positions_m(environment.physics)
+    ways_m.append([found['observer_1'], found['observer_2']])
+  flown_m, stayed_m = np.array(ways_m).swapaxes(0, 1)
+  np.testing.assert_allclose(np.ptp(stayed_m, axis=0), 0, atol=1e-4)
+  away_m = np.linalg.norm(flown_m - stayed_m, axis=1)
+  assert away_m.min() > safety.MINIMUM_SPACING_M
+  np.testing.assert_allclose(flown_m[-1] - flown_m[0], (0.6, 0, 0), atol=2e-3)
+  assert rewards.tolist() == [1, 0]
 
 
 # With other languages, and with what commands nothing.

@@ -42,11 +42,13 @@ def free_m(
   away_m = np.linalg.norm(stayers - goal, axis=1)
   if (away_m >= spacing_m).all():
     return goal_m
+  if away_m.min() < _MIDDLE * spacing_m:
+    middle = stayers[away_m.argmin()]
+    back = begin - middle
+    to_begin = back / max(np.linalg.norm(back), _SAME_M)
+    goal = middle + _MIDDLE * spacing_m * to_begin
   near = stayers[away_m < 3 * spacing_m]
-  from_m = np.where(
-    (np.linalg.norm(goal - near, axis=1) > _MIDDLE * spacing_m)[:, None],
-    goal - near, begin - near,
-  )  # fmt: skip
+  from_m = goal - near
   from_m /= np.maximum(np.linalg.norm(from_m, axis=1), _SAME_M)[:, None]
   places = np.concatenate([near + spacing_m * from_m, *_rings(near, spacing_m)])
   clear_m = np.linalg.norm(places[:, None] - stayers, axis=2).min(axis=1)
