@@ -19,7 +19,7 @@ import numpy as np
 
 from waggle_tasks import errors
 from waggle_tasks.arenas import bounds
-from waggle_tasks.protocol import limits
+from waggle_tasks.protocol import checks, limits
 from waggle_tasks.tasks import cells, detours, headings
 
 # Within what vehicles of all dynamics can fly, with strength left for wind.
@@ -65,6 +65,18 @@ class Law:
     bounds.HALF_WIDTH_M - 0.2, bounds.HALF_DEPTH_M - 0.2, bounds.HEIGHT_M - 0.2
   )  # fmt: skip
 
+  def __post_init__(self) -> None:
+    ranges = {
+      'spacing_m': (0.01, 2.0),
+      'speed_mps': (0.01, 10.0),
+      'acceleration_mps2': (0.01, 100.0),
+    }
+    checks.settle_numbers(self, ranges, AvoidanceError)
+    if not (np.array(self.low_m) < self.high_m).all():
+      raise AvoidanceError(
+        f'`low_m` must be below `high_m` {self.high_m}: got {self.low_m}'
+      )
+
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class Known:
@@ -90,6 +102,10 @@ class Known:
   asked_mps: np.ndarray | None = None
 
   def __post_init__(self) -> None:
+    if np.ndim(self.yields) != 2:
+      raise AvoidanceError(
+        f'`yields` must be booleans (N, M): got {self.yields!r}'
+      )
     count, near = np.shape(self.yields)
     for field, shape in (
       ('places_m', (count, 3)), ('velocities_mps', (count, 3)),
