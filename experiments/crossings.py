@@ -29,7 +29,9 @@ from waggle_tasks.protocol import checks
 if TYPE_CHECKING:
   from waggle_tasks.experiments.episodes import crossing
 
-_VEHICLES = flags.DEFINE_list('vehicles', ['5', '10', '20'], 'Numbers of them.')
+_VEHICLES = flags.DEFINE_list(
+  'vehicles', ['5', '8', '12', '16', '20'], 'Numbers of them.'
+)
 _COUNT = flags.DEFINE_integer(
   'count', 1000, 'How many crossings in all, shared among these numbers.'
 )

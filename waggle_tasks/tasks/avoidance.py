@@ -33,7 +33,7 @@ _ROUND_M = 0.04  # The same, of ways round those who stay.
 _SAME_M = 0.001
 # Later meetings are not minded yet. Who comes to rest by a stayer meets nobody.
 _HORIZON_S, _STAYERS_S = 3.0, 0.9 * _CLOSING_S
-_STAYS_MPS = 0.1  # Who hovers wanders at less.
+_STAYS_MPS = 0.5  # Who hovers wanders at less, in any drift.
 _ANGLES = np.radians(np.arange(0, 360, 30))
 _SHARES = np.array([1.0, 0.5])
 _TINY = 1e-9
