@@ -78,9 +78,7 @@ class Navigator:
         ' one was accepted before'
       )
     displacement_m = command.payload.displacement_m(self._agreement.units)
-    goal_m = flight.goal_m(
-      position_m, displacement_m, self._agreement.hover_height_m
-    )
+    goal_m = flight.goal_m(position_m, displacement_m, self._agreement)
     self._flight = flight.Flight(position_m.copy(), goal_m, time_s)
 
   def step(self, position_m: np.ndarray, time_s: float) -> reference.Reference:

@@ -28,6 +28,7 @@ OTHERS = {
   ),
   'language': 'swift', 'bits': '01', 'repeat': 2,
   'dynamics': 'rotors', 'estimator': 'mocap', 'gusts': True, 'downwash': True,
+  'safety': 'avoid', 'meaning': 'place',
 }  # fmt: skip
 
 

@@ -12,6 +12,10 @@ class WaggleError(ValueError):
   """
 
 
+class ScenarioError(WaggleError):
+  """A field of a scenario that breaks a rule."""
+
+
 def did_you_mean(word: str, choices: Sequence[str]) -> str:
   """A question that lists the choices close to a word, or nothing."""
   close = difflib.get_close_matches(word, choices)

@@ -53,6 +53,7 @@ def parts(scenario: Scenario) -> parts_lib.Parts:
     dynamics=scenario.dynamics,
     air=scenario.air,
     estimator=scenario.estimator,
+    safety=scenario.safety,
   )
   furnish.furnish(
     made.room, scenario.surroundings, made.poses, agreement,

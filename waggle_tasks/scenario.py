@@ -1,49 +1,42 @@
 """A scenario: every choice of one episode, frozen and checked."""
 
 import dataclasses
-import math
 
 from waggle_tasks import appearance as appearance_lib
-from waggle_tasks import errors
+from waggle_tasks import errors, placement, scenario_rules, spoken
 from waggle_tasks import sensor as sensor_lib
-from waggle_tasks.arenas import bounds, layouts
+from waggle_tasks.arenas import layouts
 from waggle_tasks.entities import optics
 from waggle_tasks.protocol import agreement as agreement_lib
 from waggle_tasks.protocol import (
   alphabets,
-  checks,
   clock,
   controls,
   gestures,
-  language_names,
   languages,
+  limits,
   packets,
   timing,
 )
 from waggle_tasks.protocol import camera as camera_lib
-from waggle_tasks.protocol import limits as limits_lib
 from waggle_tasks.protocol import payload as payload_lib
 from waggle_tasks.protocol import performance as performance_lib
 from waggle_tasks.tasks import air as air_lib
 from waggle_tasks.tasks import drift as drift_lib
-from waggle_tasks.tasks import estimators, safety
+from waggle_tasks.tasks import estimators
+from waggle_tasks.tasks import safety as safety_lib
 from waggle_tasks.tasks import surroundings as surroundings_lib
 
-CONTROLS = controls.CONTROLS
-LAYOUTS = ('arc', 'line')
+CONTROLS, DYNAMICS = controls.CONTROLS, limits.DYNAMICS
+LAYOUTS, PAPER = placement.LAYOUTS, spoken.PAPER
+ScenarioError = errors.ScenarioError
 # After the last gesture: the 3 s null, the flight, the hold, and time to spare.
 AFTERMATH_S = 12.0
+# What more those who avoid each other may take.
+AVOIDING_S = 18.0
 NO_SEND_S = 10.0  # Paper, section 'Controls and supplemental suite'.
 INTERRUPTED_S = 60.0  # The same.
-MAX_OBSERVERS = 64
-PAPER = 'paper'
 _READ_S = 3.0  # After data, which nobody flies.
-_SIDE_PX = (64, 2048)  # Of an image.
-_CLEAR_M = 0.1  # From the highest point of a gesture to the ceiling.
-
-
-class ScenarioError(errors.WaggleError):
-  """A field of a scenario that breaks a rule."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -71,7 +64,8 @@ class Scenario:
       'black_input'.
     stop_s: When transmission stops, in s, if `control` is 'interrupted'.
     duration_s: How long the episode lasts at most, in s; unset, 10 s without
-      sending, 60 s when interrupted, else 12 s after the dance.
+      sending, 60 s when interrupted, else 12 s after the dance, 30 s where
+      vehicles avoid each other, 3 s after data.
     language: What is spoken, 'paper' or one of `languages.LANGUAGES`, whose
       code may be changed, such as 'swift:check=crc4,parity=0'; or a
       `languages.Language` of your own, as a flag a JSON file of one, FILE.json.
@@ -85,7 +79,7 @@ class Scenario:
     units: The agreed fields of the payload.
     appearance: How the room looks.
     surroundings: What else moves in it.
-    dynamics: How vehicles fly, one of `limits_lib.DYNAMICS`: by ideal forces,
+    dynamics: How vehicles fly, one of `DYNAMICS`: by ideal forces,
       as in the paper, which never tilt a vehicle, or by four rotors with lag
       and drag, under a cascade of laws.
     air: What the air does; only rotors feel it.
@@ -93,6 +87,9 @@ class Scenario:
       `estimators.ESTIMATORS`: with none of them they know the truth, with
       another they wander by its errors.
     drift: How far vehicles wander from where they should be.
+    safety: What is done about flights that would meet, one of
+      `safety_lib.SAFETIES`: they are refused, as in the paper, or vehicles
+      avoid each other.
     sensor: What spoils the observers' images.
     rate_hz: How many images and references there are in a second: 250 over a
       whole number, 10 to 125.
@@ -134,6 +131,7 @@ class Scenario:
   air: air_lib.Air = air_lib.Air()
   estimator: str = 'none'
   drift: drift_lib.Drift = drift_lib.Drift()
+  safety: str = 'refuse'
   sensor: sensor_lib.Sensor = sensor_lib.Sensor()
   rate_hz: float = agreement_lib.Agreement.rate_hz
   hover_height_m: float = agreement_lib.Agreement.hover_height_m
@@ -144,54 +142,7 @@ class Scenario:
   eye_offset_m: float = optics.OFFSET_M
 
   def __post_init__(self) -> None:
-    for field in dataclasses.fields(self):
-      value, usual = getattr(self, field.name), field.default
-      if dataclasses.is_dataclass(usual) and type(value) is not type(usual):
-        raise ScenarioError(
-          f'`{field.name}` must be a {type(field.default).__name__}:'
-          f' got {value!r}'
-        )
-    checks.choice('control', self.control, CONTROLS, ScenarioError)
-    checks.choice('dynamics', self.dynamics, limits_lib.DYNAMICS, ScenarioError)
-    checks.choice(
-      'estimator', self.estimator, estimators.ESTIMATORS, ScenarioError
-    )
-    self._check_dynamics()
-    checks.choice('camera', self.camera, optics.CAMERAS, ScenarioError)
-    counts = {
-      'observers': (1, MAX_OBSERVERS),
-      'seed': (0, 2**32 - 1),
-      'camera_width_px': _SIDE_PX,
-      'camera_height_px': _SIDE_PX,
-      'camera_fovy_deg': (10.0, 120.0),
-      'repeat': (1, 100),
-    }
-    checks.settle_numbers(self, counts, ScenarioError)
-    self._check_language()
-    agreed = self.agreement  # Which checks itself.
-    for name in ('rate_hz', 'hover_height_m'):
-      checks.settle(self, name, getattr(agreed, name))
-    self._check_exposure(agreed.frame_s)
-    limits = {
-      'black_observer': (1, self.observers),
-      'distance_m': (0.2, 4.0),
-      'half_span_deg': (0.0, 180.0),
-      'bearing_deg': (-180.0, 180.0),
-      'spacing_m': (0.0, 4.0),
-      'jitter_m': (0.0, 0.1),
-      'stop_s': (0.0, 600.0),
-      'eye_offset_m': (-0.1, 0.1),
-      'duration_s': (agreed.frame_s, 600.0),
-    }
-    if self.control != 'black_input':
-      del limits['black_observer']
-    if self.duration_s is None:
-      del limits['duration_s']
-    checks.settle_numbers(self, limits, ScenarioError)
-    limits_lib.check_motions(agreed.motions, limits_lib.LIMITS[self.dynamics])
-    self._check_height()
-    payload_lib.Payload.from_bits(self.payload, self.units)
-    self.surroundings.check(self.poses(), self.units.reach_m)
+    scenario_rules.check(self)
 
   @property
   def message(self) -> payload_lib.Payload:
@@ -204,7 +155,7 @@ class Scenario:
     seen_with = camera_lib.Camera.of(
       self.camera_width_px, self.camera_height_px, self.camera_fovy_deg
     )
-    spoken = self._language()
+    language = spoken.find(self.language)
     agreed = agreement_lib.Agreement(
       self.codebook,
       self.pauses,
@@ -213,14 +164,14 @@ class Scenario:
       seen_with,
       self.rate_hz,
       self.hover_height_m,
-      spoken,
+      language,
       packets.Packets.of(len(self.bits)) if self.bits else None,
     )
-    if spoken is None or not isinstance(spoken.alphabet, alphabets.Gestures):
-      return agreed
-    return dataclasses.replace(
-      agreed, codebook=spoken.alphabet.codebook, pauses=spoken.pauses
-    )
+    if language and isinstance(language.alphabet, alphabets.Gestures):
+      return dataclasses.replace(
+        agreed, codebook=language.alphabet.codebook, pauses=language.pauses
+      )
+    return agreed
 
   @property
   def performance(self) -> performance_lib.Performance:
@@ -253,113 +204,27 @@ class Scenario:
       return NO_SEND_S
     if self.control == 'interrupted':
       return INTERRUPTED_S
-    after_s = AFTERMATH_S if not self.bits else _READ_S
+    after_s = _READ_S if self.bits else AFTERMATH_S
+    if self.safety == 'avoid' and not self.bits:
+      after_s += AVOIDING_S
     return self.performance.schedule.end_s + after_s
 
   def poses(self) -> dict[str, layouts.Pose]:
-    """Where each vehicle starts, before jitter, by its name.
+    """Where each vehicle starts, before jitter, by its name; see `placement`.
 
     Raises:
       ScenarioError: if the layout is not known.
       layouts.LayoutError: if two vehicles would be too close, or one outside
         of the room.
     """
-    poses = {'performer': layouts.performer_pose()}
-    places = self._layout().poses(self.observers)
-    if len(places) != self.observers:
-      raise ScenarioError(
-        f'`layout` must give {self.observers} poses: got {len(places)}'
-      )
-    for index, pose in enumerate(places):
-      poses[f'observer_{index + 1}'] = pose
-    for name, pose in poses.items():
-      poses[name] = pose = pose.settled(self.hover_height_m)
-      bounds.check_inside(name, pose)
-    # Two neighbours can come closer by the jitter of both, along x and y, and
-    # by the drift and the errors of both.
-    nearer_m = 2 * math.hypot(self.jitter_m, self.jitter_m)
-    nearer_m += self.drift.near_m + estimators.near_m(self.estimator)
-    layouts.check_spacing(poses, safety.MINIMUM_SPACING_M + nearer_m)
-    return poses
+    return placement.poses(self)
 
-  def _check_dynamics(self) -> None:
-    """Refuses what ideal forces, which are told the truth, do not feel."""
-    asked = {
-      'estimator': self.estimator != 'none',
-      'wind_mps': bool(self.air.wind_mps),
-      'downwash': self.air.downwash,
-    }
-    for field, is_asked in asked.items():
-      if is_asked and self.dynamics != 'rotors':
-        raise ScenarioError(
-          f'`{field}` must not be given with `dynamics` {self.dynamics!r}: no'
-          " air is felt and the truth is known there; choose 'rotors'"
-        )
+  @property
+  def wander_m(self) -> float:
+    """How much nearer hover and errors bring two vehicles."""
+    return self.drift.near_m + estimators.near_m(self.estimator)
 
-  def _language(self) -> languages.Language | None:
-    """What is spoken; None for the paper's."""
-    if isinstance(self.language, languages.Language):
-      return self.language
-    if self.language == PAPER:
-      return None
-    choices = [PAPER, *languages.LANGUAGES]
-    stem, _, changes = str(self.language).partition(':')
-    checks.choice('language', stem, choices, ScenarioError)
-    if stem == PAPER:
-      raise ScenarioError(
-        f'`language` {PAPER!r} must stand alone, as it has no code to change:'
-        f' got {changes!r} after it'
-      )
-    return language_names.find(str(self.language))
-
-  def _check_language(self) -> None:
-    """Refuses what the language that is spoken does not take."""
-    spoken = self._language()
-    if spoken is None:
-      for field, usual in (('bits', ''), ('repeat', 1)):
-        if getattr(self, field) != usual:
-          raise ScenarioError(
-            f'`{field}` must not be given with `language` {PAPER!r}, which says'
-            f' one payload once: choose one of {[*languages.LANGUAGES]}'
-          )
-      return
-    if self.bits:
-      payload_lib.Data(self.bits)
-    for field in ('codebook', 'pauses'):
-      if getattr(self, field) != getattr(Scenario, field):
-        raise ScenarioError(
-          f'`{field}` must not be given with `language`: {self.language!r} has'
-          f' its own; give it with {PAPER!r}, or a `languages.Language` of your'
-          ' own'
-        )
-
-  def _check_exposure(self, frame_s: float) -> None:
-    """Refuses one that takes longer than from one image to the next."""
-    if self.sensor.exposure_s > frame_s:
-      raise ScenarioError(
-        f'`exposure_s` must be at most {frame_s:g} s, the time from one image'
-        f' to the next at {self.rate_hz:g} Hz: got {self.sensor.exposure_s!r}'
-      )
-
-  def _check_height(self) -> None:
-    """Refuses gestures that leave the room."""
-    most_m = bounds.HEIGHT_M - _CLEAR_M - self.agreement.highest_m
-    if self.hover_height_m > most_m:
-      raise ScenarioError(
-        f'`hover_height_m` must be at most {most_m:g}, so that gestures stay'
-        f' {_CLEAR_M:g} m under the ceiling: got {self.hover_height_m!r}'
-      )
-
-  def _layout(self) -> layouts.Layout:
-    if not isinstance(self.layout, str) and callable(
-      getattr(self.layout, 'poses', None)
-    ):
-      return self.layout
-    checks.choice('layout', self.layout, LAYOUTS, ScenarioError)
-    if self.layout == 'arc':
-      return layouts.Arc(
-        self.distance_m,
-        math.radians(self.half_span_deg),
-        math.radians(self.bearing_deg),
-      )
-    return layouts.Line(self.distance_m, self.spacing_m)
+  @property
+  def kept_m(self) -> float:
+    """How far apart vehicles that avoid are kept."""
+    return safety_lib.kept_m(self.wander_m)

@@ -146,6 +146,9 @@ CLAIMS = {
   'sway-noise': _sweep('sway', 2, *_SWAY, table=1, noise_sigma='10'),
   'sway-dancer': _sweep('sway', 2, table=2, performer_drift_m='0.002'),
   'hover': Claim('hover', TEXT, ('drift',)),
+  'crossings': Claim(
+    'crossings', UNCHECKED, detail='a thousand crossings take 13 minutes'
+  ),
   'languages': Claim('languages', TEXT, ('languages',)),
   'gentle': _sweep(
     'gentle', 1, '--language=gentle', '--dynamics=rotors', receiver='joint',

@@ -122,6 +122,33 @@ def _judge_reading(
   )  # fmt: skip
 
 
+def _targets_m(
+  scene: scenario.Scenario, rollout: episode.Rollout, name: str, frame: int
+) -> tuple[np.ndarray, np.ndarray]:
+  """Where what was sent leads a reader, (3,) as it takes it and in truth.
+
+  It counts from where it takes itself to be. A place is the same for all.
+  """
+  begin_m = rollout.positions_m[name][frame]
+  error_m = rollout.believed_m(name)[frame] - rollout.steady_m(name)[frame]
+  error_m[2] = 0.0  # All fly to one height.
+  goal_m, is_place = begin_m + error_m, scene.units.meaning == 'place'
+  if is_place:  # Its slot is twice as far aside of the front as it is itself.
+    aside_rad = 2 * math.atan2(goal_m[0], -goal_m[1])
+    slot = np.array([math.sin(aside_rad), -math.cos(aside_rad), 0.0])
+    goal_m = scene.units.slot_m * slot
+  goal_m = goal_m + expected_displacement_m(scene)
+  goal_m[2] = scene.hover_height_m
+  if scene.safety == 'avoid':
+    goal_m = safety.settled_m(
+      goal_m,
+      rollout.positions_m[name][0],
+      [rollout.positions_m['performer'][0]],
+      scene.kept_m,
+    )
+  return goal_m, goal_m if is_place else goal_m - error_m
+
+
 def _message(
   events: Sequence[episode.Event],
 ) -> tuple[receiver.Event | None, str | None]:
@@ -210,8 +237,7 @@ def _fly(
   frame_s = agreement.frame_s
   begin = int(np.searchsorted(times_s, message_s - frame_s / 2))
   # An observer flies from where it was, drift and all, to the agreed height.
-  target_m = rollout.positions_m[name][begin] + expected_displacement_m(scene)
-  target_m[2] = agreement.hover_height_m
+  goal_m, target_m = _targets_m(scene, rollout, name, begin)
   error_m = np.linalg.norm(positions_m - target_m, axis=1)
   speed_mps = (
     np.linalg.norm(
@@ -231,10 +257,8 @@ def _fly(
   last_m = float(error_m[-1])
   found: dict[str, Any] = {'error_m': last_m}
   if scene.estimator != 'none':
-    believed_m = rollout.believed_m(name)
-    goal_m = believed_m[begin] + expected_displacement_m(scene)
-    goal_m[2] = agreement.hover_height_m
-    found['estimate_error_m'] = float(np.linalg.norm(believed_m[-1] - goal_m))
+    off_m = rollout.believed_m(name)[-1] - goal_m
+    found['estimate_error_m'] = float(np.linalg.norm(off_m))
   if arrival is None:
     reason = f'arrival: never, {last_m * 1e3:.1f} mm away at the end'
     return {**found, 'failures': [reason]}

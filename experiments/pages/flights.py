@@ -1,13 +1,15 @@
 """Where everybody flew in numbers, and how near to each other."""
 
 import itertools
+from typing import Any
 
 import numpy as np
 
+from waggle_tasks import plain
 from waggle_tasks.agents import observer_agent
 from waggle_tasks.experiments.pages import markup
 from waggle_tasks.experiments.record import archive
-from waggle_tasks.tasks import safety
+from waggle_tasks.tasks import drift, estimators, safety
 
 _PAIRS = 10  # The nearest ones; many observers have many pairs.
 
@@ -23,7 +25,15 @@ def commanded(
     ):
       frame = int(np.abs(run.times_s - event.time_s).argmin())
       begin_m = run.positions_m[name][frame]
-      return begin_m, np.array(event.target_m)
+      target_m = np.array(event.target_m)
+      if run.scenario['safety'] == 'avoid':
+        target_m = safety.settled_m(
+          target_m,
+          run.positions_m[name][0],
+          [run.positions_m['performer'][0]],
+          _kept_m(run.scenario),
+        )
+      return begin_m, target_m
   return None
 
 
@@ -58,6 +68,20 @@ def _vector(way_m: np.ndarray) -> str:
   return ', '.join(f'{value:.3f}' for value in way_m)
 
 
+def _kept_m(scene: dict[str, Any]) -> float:
+  """How far apart vehicles of a scenario are kept, of its plain data."""
+  wander = plain.from_plain(drift.Drift, scene['drift'], 'drift')
+  return safety.kept_m(wander.near_m + estimators.near_m(scene['estimator']))
+
+
+def _rule(run: archive.Run) -> str:
+  """What is done about vehicles that would meet."""
+  least_m = safety.MINIMUM_SPACING_M
+  if run.scenario['safety'] == 'avoid':
+    return f'Vehicles avoid each other, to stay {least_m:g} m apart'
+  return f'A flight that would pass under {least_m:g} m is refused'
+
+
 def distances(run: archive.Run) -> markup.Markup:
   """The smallest distance of each pair of vehicles, the nearest pairs first."""
   pairs = []
@@ -75,7 +99,5 @@ def distances(run: archive.Run) -> markup.Markup:
   return markup.table(
     ('vehicles', 'smallest distance, m', 'at, s'),
     rows,
-    f'A flight that would pass under {safety.MINIMUM_SPACING_M:g} m is refused'
-    + (note if left_out else '')
-    + '.',
+    _rule(run) + (note if left_out else '') + '.',
   )

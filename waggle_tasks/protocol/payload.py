@@ -9,6 +9,7 @@ from waggle_tasks import errors
 from waggle_tasks.protocol import checks
 
 _MOST_BITS = 12  # Of a field.
+MEANINGS = ('displacement', 'place')
 
 
 class PayloadError(errors.WaggleError):
@@ -28,19 +29,27 @@ class Units:
       paper.
     heading_bits: Bits of the payload's heading, 1 to 12; 3 in the paper.
     distance_bits: Bits of the payload's distance, 1 to 12; 2 in the paper.
+    meaning: What a payload names, one of `MEANINGS`: how far each reader flies
+      from where it is, as in the paper, or a place that is the same for all,
+      counted from the performer's, around which each has a slot.
+    slot_m: Radius of the ring of slots about such a place, 0.1 to 4 m.
   """
 
   heading_step_rad: float = math.pi / 4
   distance_unit_m: float = 0.2
   heading_bits: int = 3
   distance_bits: int = 2
+  meaning: str = 'displacement'
+  slot_m: float = 0.5
 
   def __post_init__(self) -> None:
+    checks.choice('meaning', self.meaning, MEANINGS, PayloadError)
     limits = {
       'heading_step_rad': (1e-3, math.pi),
       'distance_unit_m': (1e-3, 1.0),
       'heading_bits': (1, _MOST_BITS),
       'distance_bits': (1, _MOST_BITS),
+      'slot_m': (0.1, 4.0),
     }
     checks.settle_numbers(self, limits, PayloadError)
 
@@ -145,8 +154,8 @@ class Payload:
     if not isinstance(text, str) or text.count('|') != 2:
       return cls.from_bits(text)
     _, heading, distance = text.split('|')
-    widths = {'heading_bits': len(heading), 'distance_bits': len(distance)}
-    return cls.from_bits(text.replace('|', ''), Units(**widths))
+    units = Units(heading_bits=len(heading), distance_bits=len(distance))
+    return cls.from_bits(text.replace('|', ''), units)
 
   def __int__(self) -> int:
     return int(self.bits, 2)

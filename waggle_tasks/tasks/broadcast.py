@@ -10,7 +10,6 @@ import numpy as np
 from waggle_tasks.arenas import flight_room
 from waggle_tasks.entities import observer, performer
 from waggle_tasks.protocol import agreement as agreement_lib
-from waggle_tasks.protocol import payload
 from waggle_tasks.tasks import (
   actions,
   contacts,
@@ -136,15 +135,7 @@ class Broadcast(copies.Uncopied, steps.Framed):
 
   def _begin_flights(self) -> None:
     """Lets every observer wait at its place."""
-    displacement_m, message = None, self._parts.performance.message
-    if isinstance(message, payload.Payload):
-      displacement_m = message.displacement_m(self.agreement.units)
-    self._flights = flights.Flights(
-      {n: np.array(self._fleet.homes[n].position_m) for n in self._observers},
-      displacement_m,
-      self._parts.minimum_spacing_m,
-      self.agreement,
-    )
+    self._flights = flights.Flights(self._parts, self._fleet.homes)
     self._rewards = [0.0] * len(self._observers)
     self._contacts: tuple[tuple[str, str], ...] = ()
 
@@ -177,9 +168,7 @@ class Broadcast(copies.Uncopied, steps.Framed):
       )
       self._fleet.command(physics, name, middle_s, motion)
     wanted = actions.read(action, [*self._observers])
-    followed = self._flights.follow(
-      wanted, self.positions_m(physics), self._fleet.offsets_m(time_s), time_s
-    )
+    followed = self._flights.follow(wanted, self._fleet, physics, time_s)
     for name, each in followed.items():
       motion = each.position_m, each.velocity_mps, each.acceleration_mps2
       self._fleet.command(physics, name, middle_s, motion, each.turn_rad)

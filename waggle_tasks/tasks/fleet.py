@@ -9,8 +9,8 @@ import numpy as np
 from waggle_tasks.arenas import flight_room, layouts
 from waggle_tasks.entities import autopilot, controller, crazyflie
 from waggle_tasks.protocol import agreement as agreement_lib
+from waggle_tasks.tasks import convoy, estimators, weather
 from waggle_tasks.tasks import drift as drift_lib
-from waggle_tasks.tasks import estimators, weather
 from waggle_tasks.tasks import parts as parts_lib
 
 Offsets = dict[str, tuple[np.ndarray, np.ndarray]]
@@ -187,6 +187,30 @@ class Fleet:
     nothing = np.zeros((len(self._vehicles), 3))
     places_m = nothing if errors is None else errors[0]
     return dict(zip(self._vehicles, places_m, strict=True))
+
+  def sights(
+    self, physics: mjcf.Physics, time_s: float
+  ) -> dict[str, convoy.Sight]:
+    """What each vehicle is told of all, by its name.
+
+    It sees where others are beside it, so that its own errors are in all of it.
+    """
+    errors = self._belief.errors(time_s)
+    places_m, rates_mps = (
+      physics.data.qpos[self._places],
+      physics.data.qvel[self._rates],
+    )
+    out, names = {}, [*self._vehicles]
+    for row, name in enumerate(names):
+      off_m, off_mps = (0.0, 0.0) if errors is None else (
+        errors[0][row], errors[1][row]
+      )  # fmt: skip
+      others_m = dict(zip(names, places_m + off_m, strict=True))
+      others_mps = dict(zip(names, rates_mps + off_mps, strict=True))
+      own_m = others_m.pop(name)
+      del others_mps[name]
+      out[name] = convoy.Sight(own_m, others_m, others_mps)
+    return out
 
   def offsets_m(self, time_s: float) -> dict[str, np.ndarray]:
     """How far from its reference each vehicle is, (3,), by its name.

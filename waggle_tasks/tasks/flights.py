@@ -2,32 +2,41 @@
 
 from collections.abc import Mapping, Sequence
 
+from dm_control import mjcf
 import numpy as np
 
-from waggle_tasks.protocol import agreement as agreement_lib
-from waggle_tasks.protocol import flight, reference
+from waggle_tasks.arenas import layouts
+from waggle_tasks.protocol import flight, payload, reference
+from waggle_tasks.tasks import escort as escort_lib
+from waggle_tasks.tasks import fleet as fleet_lib
+from waggle_tasks.tasks import parts as parts_lib
 from waggle_tasks.tasks import progress, safety
+
+_LEVEL = np.array([1.0, 1.0, 0.0])
 
 
 class Flights:
   """All observers' flights in one episode."""
 
   def __init__(
-    self,
-    homes_m: Mapping[str, np.ndarray],
-    displacement_m: np.ndarray | None,
-    minimum_spacing_m: float,
-    agreement: agreement_lib.Agreement,
+    self, parts: parts_lib.Parts, homes: Mapping[str, layouts.Pose]
   ) -> None:
     """Lets every observer wait at its place.
 
     Args:
-      homes_m: By observer name, (3,) where it begins.
-      displacement_m: (3,) what is commanded to all, or None for nothing.
-      minimum_spacing_m: Smallest distance allowed between two vehicles.
-      agreement: What both sides know: the rate and the height.
+      parts: What the task is made of.
+      homes: Where each vehicle begins, by its name.
     """
-    self._minimum_spacing_m = minimum_spacing_m
+    self._agreement = parts.agreement
+    self._minimum_spacing_m = parts.minimum_spacing_m
+    homes_m = {name: np.array(pose.position_m) for name, pose in homes.items()}
+    dancers_m = [homes_m.pop(name) for name in parts.dancers]
+    self._escort: escort_lib.Escort | None = None
+    if parts.safety == 'avoid':
+      self._escort = escort_lib.Escort(parts, dancers_m)
+    message, self._displacement_m = parts.performance.message, None
+    if isinstance(message, payload.Payload):  # Data command nothing.
+      self._displacement_m = message.displacement_m(self._agreement.units)
     self._gates: list[safety.Gate] = []
     self._progress: list[progress.Progress] = []
     self._requests: dict[str, flight.Flight] = {}
@@ -35,11 +44,10 @@ class Flights:
       hold = reference.Reference.hover(home_m)
       self._gates.append(safety.Gate(name, hold))
       target_m = None
-      if displacement_m is not None:
-        target_m = flight.goal_m(
-          home_m, displacement_m, agreement.hover_height_m
-        )
-      self._progress.append(progress.Progress(home_m, target_m, agreement))
+      if self._displacement_m is not None:
+        target_m = flight.goal_m(home_m, self._displacement_m, self._agreement)
+      way = progress.Progress(home_m, target_m, self._agreement)
+      self._progress.append(way)
 
   @property
   def begun(self) -> bool:
@@ -60,38 +68,43 @@ class Flights:
   def follow(
     self,
     wanted: Sequence[reference.Reference],
-    positions_m: Mapping[str, np.ndarray],
-    offsets_m: Mapping[str, np.ndarray],
+    fleet: fleet_lib.Fleet,
+    physics: mjcf.Physics,
     time_s: float,
   ) -> dict[str, reference.Reference]:
     """The references that controllers get for those that observers ask for.
 
     Args:
       wanted: Each observer's reference.
-      positions_m: By name, (3,) where every vehicle is.
-      offsets_m: By name, (3,) how far each is from its reference by drift, and
-        by what it does not know.
+      fleet: The vehicles.
+      physics: Where they are.
       time_s: Simulation time.
     """
-    self._judge(wanted, positions_m, offsets_m, time_s)
-    return {
+    positions_m = fleet.positions_m(physics)
+    for gate, way, each in zip(
+      self._gates, self._progress, wanted, strict=True
+    ):
+      plan = gate.request(each, positions_m[gate.name], time_s)
+      if plan is not None and gate.name not in self._requests:
+        self._requests[gate.name] = plan
+        self._aim(gate, way, fleet, positions_m[gate.name], time_s)
+    self._judge(positions_m, time_s)
+    followed = {
       gate.name: gate.follow(each, time_s)
       for gate, each in zip(self._gates, wanted, strict=True)
     }
+    if self._escort:
+      refused = [gate.name for gate in self._gates if gate.refusal]
+      followed |= self._escort.fly(
+        followed, refused, lambda: fleet.sights(physics, time_s)
+      )
+    return followed
 
   def _judge(
-    self,
-    wanted: Sequence[reference.Reference],
-    positions_m: Mapping[str, np.ndarray],
-    offsets_m: Mapping[str, np.ndarray],
-    time_s: float,
+    self, positions_m: Mapping[str, np.ndarray], time_s: float
   ) -> None:
     """Accepts or refuses the commands that have waited for others."""
-    for gate, each in zip(self._gates, wanted, strict=True):
-      plan = gate.request(each, positions_m[gate.name], time_s)
-      if plan is not None:
-        self._requests.setdefault(gate.name, plan)
-    if not self._requests:
+    if not self._requests or (self._escort and not self._escort.free(time_s)):
       return
     due = {
       name: plan
@@ -104,13 +117,43 @@ class Flights:
       **plans,
       **self._requests,
     }
-    reasons = safety.refuse(due, others, positions_m, self._minimum_spacing_m)
-    for gate, way in zip(self._gates, self._progress, strict=True):
+    reasons = {}
+    if self._escort is None:
+      reasons = safety.refuse(due, others, positions_m, self._minimum_spacing_m)
+    for gate in self._gates:
       if gate.name in due:
-        gate.judge(self._requests.pop(gate.name), reasons.get(gate.name))
-        # A displacement counts from where it was read, drift and all; its
-        # height is the agreed one.
-        way.shift(offsets_m[gate.name] * (1.0, 1.0, 0.0))
+        plan = self._requests.pop(gate.name)
+        gate.judge(plan, reasons.get(gate.name))
+        if self._escort:
+          self._escort.begin(gate.name, gate.hold_m, plan.goal_m)
+
+  def _aim(
+    self,
+    gate: safety.Gate,
+    way: progress.Progress,
+    fleet: fleet_lib.Fleet,
+    position_m: np.ndarray,
+    time_s: float,
+  ) -> None:
+    """Counts a target from where a message was read, drift and all.
+
+    What it means is a matter of where its reader took itself to be, and is
+    judged by where that truly is. A place is the same for all, whoever errs.
+    """
+    if way.target_m is None or self._displacement_m is None:
+      return
+    error_m = fleet.errors_m(time_s)[gate.name] * _LEVEL
+    is_place = self._agreement.units.meaning == 'place'
+    if is_place:
+      goal_m = flight.goal_m(
+        position_m + error_m, self._displacement_m, self._agreement
+      )
+    else:
+      offset_m = fleet.offsets_m(time_s)[gate.name] * _LEVEL
+      goal_m = way.target_m + (offset_m + error_m)
+    if self._escort:
+      goal_m = self._escort.settled_m(goal_m, gate.hold_m)
+    way.target_m = goal_m if is_place else goal_m - error_m
 
   def update(
     self,

@@ -11,7 +11,8 @@ from waggle_tasks.protocol import checks, limits
 from waggle_tasks.protocol import performance as performance_lib
 from waggle_tasks.tasks import air as air_lib
 from waggle_tasks.tasks import drift as drift_lib
-from waggle_tasks.tasks import safety
+from waggle_tasks.tasks import estimators
+from waggle_tasks.tasks import safety as safety_lib
 
 
 class PartsError(errors.WaggleError):
@@ -50,6 +51,8 @@ class Parts:
     dynamics: One of `limits.DYNAMICS`, that which all vehicles were built for.
     air: What the air does, where vehicles have rotors.
     estimator: How they know where they are: one of `estimators.ESTIMATORS`.
+    safety: What is done about flights that would meet: one of
+      `safety_lib.SAFETIES`.
   """
 
   room: flight_room.FlightRoom
@@ -60,12 +63,13 @@ class Parts:
   duration_s: float
   agreement: agreement_lib.Agreement = agreement_lib.Agreement()
   jitter_m: float = 0.0
-  minimum_spacing_m: float = safety.MINIMUM_SPACING_M
+  minimum_spacing_m: float = safety_lib.MINIMUM_SPACING_M
   drift: drift_lib.Drift = drift_lib.Drift()
   others: tuple[Dancer, ...] = ()
   dynamics: str = 'ideal'
   air: air_lib.Air = air_lib.Air()
   estimator: str = 'none'
+  safety: str = 'refuse'
 
   def __post_init__(self) -> None:
     vehicles = [self.performer, *self.observers]
@@ -80,6 +84,7 @@ class Parts:
           f' only of {[*self.poses]}'
         )
 
+    checks.choice('safety', self.safety, safety_lib.SAFETIES, PartsError)
     self._check_dynamics(vehicles)
 
   def _check_dynamics(self, vehicles: Sequence[crazyflie.Crazyflie]) -> None:
@@ -98,6 +103,12 @@ class Parts:
         "`air` and `estimator` must not be given with `dynamics` 'ideal', which"
         ' feel no air and know the truth'
       )
+
+  @property
+  def kept_m(self) -> float:
+    """How far apart vehicles that avoid are kept."""
+    wander_m = self.drift.near_m + estimators.near_m(self.estimator)
+    return safety_lib.kept_m(wander_m, self.minimum_spacing_m)
 
   @property
   def dancers(self) -> dict[str, Dancer]:

@@ -68,11 +68,6 @@ class Progress:
       return 1.0
     return 0.0
 
-  def shift(self, offset_m: np.ndarray) -> None:
-    """Moves the target by (3,) metres."""
-    if self.target_m is not None:
-      self.target_m = self.target_m + offset_m
-
   @property
   def done(self) -> bool:
     """Whether it has arrived and held its place for the 2 s asked for.

@@ -1,19 +1,27 @@
 """Shared safety: a flight whose spacing would be unsafe is not begun.
 
 The checks see true positions and planned paths; they reject, and neither
-avoid nor replan (paper, section 'Per-observer navigation').
+avoid nor replan (paper, section 'Per-observer navigation'). That is 'refuse';
+with 'avoid' every command is accepted, and vehicles keep away from each other
+by themselves, see `convoy`.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 import dataclasses
 
 import numpy as np
 
 from waggle_tasks.protocol import flight, reference
+from waggle_tasks.tasks import detours
 
 # Between two centres of mass. Vehicles are 0.137 m across their rotors, so
 # this leaves 2 cm.
 MINIMUM_SPACING_M = 0.16
+SAFETIES = ('refuse', 'avoid')
+# How much further apart those who avoid are kept: controllers lag a little.
+_LAG_M = 0.02
+# A place beside one that does not leave is so much further away than that.
+_BESIDE_M = 0.02
 # How long a plan waits to be judged together with those of neighbours that
 # confirm the same message a few frames later. A minimum-jerk flight moves
 # less than 2 mm in that time, so the vehicle can hold its place.
@@ -24,6 +32,38 @@ COMMAND_M = 0.01
 _CORRIDOR_M = 0.05
 # Moments at which the spacing of two plans is compared.
 _MOMENTS_S = np.linspace(0.0, flight.DURATION_S, 61)
+
+
+def kept_m(wander_m: float, minimum_m: float = MINIMUM_SPACING_M) -> float:
+  """How far apart those who avoid are kept.
+
+  Args:
+    wander_m: How much nearer hover and errors bring two vehicles.
+    minimum_m: Smallest distance allowed between two centres of mass.
+  """
+  return minimum_m + _LAG_M + wander_m
+
+
+def settled_m(
+  goal_m: np.ndarray,
+  begin_m: np.ndarray,
+  dancers_m: Sequence[np.ndarray],
+  kept_m: float,
+) -> np.ndarray:
+  """Where a message leads to with 'avoid', (3,).
+
+  Dancers do not leave: a place that is theirs stands for the nearest one beside
+  them.
+
+  Args:
+    goal_m: (3,) the place that the message says.
+    begin_m: (3,) where its reader is.
+    dancers_m: (3,) where each dancer is.
+    kept_m: See the function of this name.
+  """
+  dancers = np.reshape(dancers_m, (-1, 3))
+  near = dancers[np.abs(dancers[:, 2] - goal_m[2]) < kept_m]
+  return detours.free_m(goal_m, begin_m, near, kept_m + _BESIDE_M)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -127,6 +167,11 @@ class Gate:
     self.plan: flight.Flight | None = None
     self.refusal: Refusal | None = None
     self._hold = hold
+
+  @property
+  def hold_m(self) -> np.ndarray:
+    """(3,) the last place held."""
+    return self._hold.position_m
 
   def request(
     self, wanted: reference.Reference, position_m: np.ndarray, time_s: float
