@@ -6,6 +6,7 @@ import math
 import cv2
 import numpy as np
 
+from waggle_tasks.agents import blobs as blobs_lib
 from waggle_tasks.agents import config as config_lib
 from waggle_tasks.agents import difference, hover, klt
 from waggle_tasks.agents import ghost as ghost_lib
@@ -197,7 +198,7 @@ class Follower:
     edges = weights[0], weights[-1], weights[:, 0], weights[:, -1]
     if not any(edge.any() for edge in edges):
       return weights  # The target alone is well inside.
-    blobs = difference.Blobs(weights)
+    blobs = blobs_lib.Blobs(weights)
     (large,) = np.nonzero(blobs.totals > _PART_SHARE * self._ghost.total)
     if len(large) < 2:
       return weights
@@ -208,7 +209,7 @@ class Follower:
     """Finds the target anywhere: its share and centre, if there is just one."""
     whole = slice(0, self._size[1]), slice(0, self._size[0])
     weights = self._weights(image, whole, self._config.watch_sigmas, wide=True)
-    blobs = difference.Blobs(weights)
+    blobs = blobs_lib.Blobs(weights)
     shares = blobs.totals / self._ghost.total
     fits = (shares > _MIN_SHARE) & (shares < _MAX_SHARE)
     sides = (blobs.boxes[:, 2:] - blobs.boxes[:, :2]) / self._ghost.size_px

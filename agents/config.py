@@ -1,7 +1,6 @@
 """Every number of the receiver, named after the section it comes from."""
 
 import dataclasses
-import math
 
 from waggle_tasks.agents import group
 from waggle_tasks.agents import wandering as wandering_lib
@@ -73,8 +72,7 @@ class Differencing(group.Group):
     middle_widths: ...or so many apparent widths.
     lost_share: Smallest share of the hovering target's difference.
     most_share: Largest share of it: a target that comes close grows.
-    most_wider: How many times wider, or narrower, than while it hovered a
-      target may look, 0 for any...
+    most_wider: How many times wider or narrower it may come to look, 0 for any...
     most_higher: ...and higher: what is flat looks so from above and below.
     reach_widths: How far from where it hovered, in apparent widths, it is
       sought when it was lost, 0 for anywhere.
@@ -300,12 +298,3 @@ ABSOLUTE = Config(
   ),
 )
 VIEW_BANK = dataclasses.replace(ABSOLUTE, views=Views())
-
-
-def lasted(since_s: float, now_s: float, duration_s: float) -> bool:
-  """Whether a duration is over, to a microsecond.
-
-  Times of images are multiples of a frame in floating point: exact comparison
-  would be decided by rounding.
-  """
-  return now_s - since_s > duration_s - 1e-6 and math.isfinite(since_s)

@@ -6,7 +6,7 @@ import math
 import numpy as np
 
 from waggle_tasks.agents import config as config_lib
-from waggle_tasks.agents import klt, segmenter, wander, wandering
+from waggle_tasks.agents import elapsed, klt, segmenter, wander, wandering
 
 _MEAN_S = 0.08  # To either side.
 _STEP = 0.02  # Of the span.
@@ -80,12 +80,12 @@ class ExcursionSegmenter:
     back = self.returned and near
     self._slow_since_s = _since(self._slow_since_s, slow, now_s)
     self._back_since_s = _since(self._back_since_s, back, now_s)
-    if config_lib.lasted(self._back_since_s, now_s, config.off_s) and (
+    if elapsed.lasted(self._back_since_s, now_s, config.off_s) and (
       not self.wander.sways
-      or config_lib.lasted(self._away_since_s, now_s, self._least_s)
+      or elapsed.lasted(self._away_since_s, now_s, self._least_s)
     ):
       return self._finish(self._back_since_s)
-    if config_lib.lasted(self._slow_since_s, now_s, config.stay_s):
+    if elapsed.lasted(self._slow_since_s, now_s, config.stay_s):
       return self._finish(self._slow_since_s)
     return None
 
@@ -96,7 +96,7 @@ class ExcursionSegmenter:
       self._lead.popleft()
     self.wander.rest(track, lead_s)
     self._away_since_s = _since(self._away_since_s, away, track.time_s)
-    if config_lib.lasted(self._away_since_s, track.time_s, self._config.on_s):
+    if elapsed.lasted(self._away_since_s, track.time_s, self._config.on_s):
       self._path, self.active = [*self._lead], True
 
   def _lose(self, track: klt.Track) -> segmenter.Segment | None:
@@ -107,7 +107,7 @@ class ExcursionSegmenter:
     where, limit_s = 'not to be seen', config.coast_s
     if track.outside:
       where, limit_s = 'out of the picture', config.outside_s
-    if not config_lib.lasted(self._lost_since_s, now_s, limit_s):
+    if not elapsed.lasted(self._lost_since_s, now_s, limit_s):
       return None
     if self.active:
       lost_s = now_s - self._lost_since_s

@@ -10,6 +10,7 @@ import dataclasses
 
 import numpy as np
 
+from waggle_tasks.agents import blobs as blobs_lib
 from waggle_tasks.agents import config as config_lib
 from waggle_tasks.agents import difference
 
@@ -100,7 +101,7 @@ class Separation:
     known, grey_before = self._background, older[-1]
     before = difference.Background(grey_before, known.variance, known.slack)
     weigh, sigmas = self._detector.weights, self._config.watch_sigmas
-    blobs = difference.Blobs(weigh(grey, self._background, sigmas, wide=True))
+    blobs = blobs_lib.Blobs(weigh(grey, self._background, sigmas, wide=True))
     totals = np.where(blobs.inside(self._near), blobs.totals, 0.0)
     changes = blobs.sums(weigh(grey, before, sigmas, spread=2.0, wide=True))
     large = totals > _MIN_SHARE * totals.max()

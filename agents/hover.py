@@ -6,7 +6,14 @@ import math
 import cv2
 import numpy as np
 
-from waggle_tasks.agents import alignment, difference, ghost, learning, turns
+from waggle_tasks.agents import (
+  alignment,
+  difference,
+  elapsed,
+  ghost,
+  learning,
+  turns,
+)
 from waggle_tasks.agents import config as config_lib
 
 _CONTRAST_PX = 96  # Side of the square in which there must be something.
@@ -89,7 +96,7 @@ class Hover:
     """Notes an image of something else; another scene is learned in time."""
     if math.isnan(self._lost_since_s):
       self._lost_since_s = time_s
-    if config_lib.lasted(self._lost_since_s, time_s, self._config.forget_s):
+    if elapsed.lasted(self._lost_since_s, time_s, self._config.forget_s):
       self._forget()
     elif self._separation is not None:
       self._separation.add(None, time_s)
@@ -102,15 +109,15 @@ class Hover:
     self._alignment = self._room(image)
     grey = difference.grey(image)
     self._scene = learning.Scene(
-      self._config, grey, time_s, _middle(grey, _REST_PX),
-      _middle(grey, self._config.watch_px),
+      self._config, grey, time_s, difference.middle(grey, _REST_PX),
+      difference.middle(grey, self._config.watch_px),
     )  # fmt: skip
     self._scene.first.loosen(self._slack_px)
     self._detector = self._scene.detector
     self._know_target(grey)
     self._wanders = False
     self._since_s = time_s
-    smooth = difference.soften(grey[_middle(grey, _CONTRAST_PX)])
+    smooth = difference.soften(grey[difference.middle(grey, _CONTRAST_PX)])
     self._contrast = bool(np.ptp(smooth) >= self._config.min_contrast)
 
   def _loosen(self) -> None:
@@ -120,13 +127,10 @@ class Hover:
       each.loosen(self._slack_px)
 
   def _learn(self, grey: np.ndarray, time_s: float) -> bool:
-    """Adds an image to the background, unless something has moved.
-
-    A picture of nothing, as a black one, is no scene.
-    """
+    """Adds an image to the background, unless something has moved."""
     if not self._contrast:
-      return False
-    scene, middle = self._scene, _middle(grey, self._config.watch_px)
+      return False  # A picture of nothing, as a black one, is no scene.
+    scene, middle = self._scene, difference.middle(grey, self._config.watch_px)
     scene.look(grey)
     self._detector = scene.detector
     if scene.speckled and not self._speckled:
@@ -138,14 +142,14 @@ class Hover:
     self._wanders |= moved
     scene.add(grey, time_s)
     self.visible = True
-    if config_lib.lasted(self._since_s, time_s, self._config.learn_s):
+    if elapsed.lasted(self._since_s, time_s, self._config.learn_s):
       self._background = scene.background
       self._detector = scene.detector
       self._background.loosen(self._slack_px)
       mean = self._background.grey
       self._alignment = self._room(mean)
       if self._wanders:  # Which smears it in the mean.
-        box = _middle(grey, _REST_PX)
+        box = difference.middle(grey, _REST_PX)
         mean[box] = grey[box]
       self._know_target(mean)
       self._last: np.ndarray | None = None
@@ -158,7 +162,7 @@ class Hover:
     image: np.ndarray,
     time_s: float,
   ) -> Departure | None:
-    middle = _middle(image, self._config.watch_px)
+    middle = difference.middle(image, self._config.watch_px)
     if self._last is None or not np.array_equal(image[middle], self._last):
       self._last = image[middle].copy()
       grey = difference.grey(image, middle)
@@ -166,7 +170,7 @@ class Hover:
         self._since_s = time_s
         separation = self._separation = ghost.Separation(
           self._detector, _strict(background), self._config,
-          _middle(image, _REST_PX), middle,
+          difference.middle(image, _REST_PX), middle,
         )  # fmt: skip
         whole = difference.grey(image)
         return self._separate(aligner, background, separation, whole, time_s)
@@ -200,7 +204,7 @@ class Hover:
     return alignment.Alignment(image, geometry)
 
   def _know_target(self, grey: np.ndarray) -> None:
-    self._rest = rest = grey[_middle(grey, _REST_PX)]
+    self._rest = rest = grey[difference.middle(grey, _REST_PX)]
     self._target = alignment.Alignment(rest, turns.Shifts(), alignment.TARGET)
 
   def _hardly_moved(
@@ -211,7 +215,7 @@ class Hover:
     Then undoing its motion undoes the change; what is behind a target may tell
     where it is too, but does not go with it.
     """
-    box, target = _middle(grey, _REST_PX), self._target
+    box, target = difference.middle(grey, _REST_PX), self._target
     here, behind = grey[box], background[box]
     if not self._slack_px:
       undone = target.step(here)
@@ -280,7 +284,7 @@ class Hover:
         aligner, self._detector, self._speckled, background,
         self._slack_px, found, separation.greys,
       )  # fmt: skip
-    if not resting and config_lib.lasted(
+    if not resting and elapsed.lasted(
       self._since_s, time_s, self._config.separate_s
     ):
       self._forget()
@@ -291,14 +295,5 @@ def _strict(known: difference.Background) -> difference.Background:
   """A background without slack, which would hide a ghost, in the middle."""
   if (slack := known.slack) is not None:
     slack = slack.copy()
-    slack[_middle(slack, _REST_PX)] = 0
+    slack[difference.middle(slack, _REST_PX)] = 0
   return difference.Background(known.grey, known.variance, slack)
-
-
-def _middle(image: np.ndarray, side: int) -> tuple[slice, slice]:
-  """A square in the middle of an image."""
-  height, width = image.shape[:2]
-  return (
-    slice(max((height - side) // 2, 0), (height + side) // 2),
-    slice(max((width - side) // 2, 0), (width + side) // 2),
-  )

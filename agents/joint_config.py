@@ -56,7 +56,7 @@ class Config:
     most_higher=2.5,
     reach_widths=6.0,
     forget_s=2.5,
-    relearn_s=3.0,
+    relearn_s=6.0,
   )
   reading: Reading = Reading()
 

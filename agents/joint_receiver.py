@@ -1,7 +1,6 @@
 """Reads frames of any language as a whole: the receiver of the link."""
 
 from collections import deque
-from collections.abc import Sequence
 import dataclasses
 import math
 from typing import ClassVar
@@ -24,15 +23,13 @@ from waggle_tasks.agents import (
   shapes,
   slots,
   soft,
+  starts,
 )
 from waggle_tasks.protocol import agreement as agreement_lib
 from waggle_tasks.protocol import frame, packets, payload
 from waggle_tasks.protocol.symbols import Symbol
 
 _USUAL_M = 1.3  # A distance before any is known.
-_STEP_S = 0.04  # Apart are begins of START that are tried.
-_REFINED_S = (0.02, 0.01, 0.005)  # Steps in which the begin of START is told.
-_BEST_S = 0.12  # For how long no better START may come.
 _LATE_S = 0.2  # What a frame may be late.
 _ROUNDS = 3  # Of deciding a word and looking again.
 
@@ -130,9 +127,9 @@ class JointReceiver:
     self._history = history.History()
     self._rests: deque[float] = deque()  # Times before its first motion.
     self._open: list[_Open] = []
-    self._best: lock.Lock | None = None  # The best START of late.
-    self._tried_s = -math.inf  # The last one that was tried.
-    self._after_s = -math.inf  # When the next one may begin.
+    self._starts = starts.Starts(
+      self._usual, self._limits, self._history, self._focal_px
+    )
 
   def step(
     self, image: np.ndarray, time_s: float
@@ -168,54 +165,9 @@ class JointReceiver:
     for track in tracks:
       self._history.add(track)
     self._history.forget(time_s, 2 * (self._length_s + self._late_s))
-    events = [self._begun(found, time_s) for found in self._search(tracks)]
+    found = self._starts.step(tracks)
+    events = [self._begun(each, time_s) for each in found]
     return (*events, *self._read(time_s))
-
-  def _search(self, tracks: Sequence[klt.Track]) -> list[lock.Lock]:
-    """Every START that is over, and was seen best a moment ago."""
-    found, shape = [], self._usual
-    length_s = shape.alphabet.start.duration_s
-    for begin_s in self._begins(tracks, length_s):
-      fitted = self._fit(begin_s)
-      if fitted is not None and begin_s > self._after_s:
-        best = self._best
-        if best is None or fitted.error < best.error:
-          self._best = fitted
-      if self._best and begin_s - self._best.begin_s > _BEST_S:
-        start = self._refined(self._best)
-        self._after_s = self._best.begin_s + length_s / 4
-        self._best = None
-        found.append(start)
-    return found
-
-  def _begins(self, tracks: Sequence[klt.Track], length_s: float) -> np.ndarray:
-    """When a START of some length may have begun that was not tried before.
-
-    Images may be rare, or not come: what begins between two is found too.
-    """
-    first_s, last_s = tracks[0].time_s - length_s, tracks[-1].time_s - length_s
-    since_s = max(self._tried_s, first_s - length_s)
-    self._tried_s = last_s
-    count = math.ceil((last_s - since_s) / _STEP_S - 1e-6)
-    return last_s - _STEP_S * np.arange(count)[::-1]
-
-  def _fit(self, begin_s: float) -> lock.Lock | None:
-    """A START that began then, if it may have been one."""
-    rest_s = self._limits.start_rest_s
-    samples = self._history.samples(begin_s - rest_s)
-    fitted = lock.fit(samples, self._usual, begin_s, rest_s)
-    if fitted is None or fitted.seen < self._limits.min_seen:
-      return None
-    if fitted.scale_px * self._limits.max_distance_m < self._focal_px:
-      return None  # Whoever hovers does not dance in the distance.
-    return fitted if fitted.error <= self._limits.max_start else None
-
-  def _refined(self, start: lock.Lock) -> lock.Lock:
-    """The same, as exactly as it can be told when it began."""
-    for step_s in _REFINED_S:
-      moved = [self._fit(start.begin_s + step_s * k) for k in (-2, -1, 1, 2)]
-      start = min([start, *filter(None, moved)], key=lambda each: each.error)
-    return start
 
   def _begun(self, start: lock.Lock, time_s: float) -> receiver.Event:
     due_s = start.begin_s + self._length_s

@@ -9,7 +9,7 @@ is measured as well, around the place where the target rests.
 import numpy as np
 
 from waggle_tasks.agents import config as config_lib
-from waggle_tasks.agents import difference
+from waggle_tasks.agents import difference, elapsed
 from waggle_tasks.agents import noise as noise_lib
 
 _KEPT = 10  # Images by which changes are measured...
@@ -72,7 +72,7 @@ class Scene:
   def add(self, grey: np.ndarray, time_s: float) -> None:
     """Takes a picture in which nothing has moved."""
     self._sum += grey
-    due = config_lib.lasted(self._kept_s, time_s, _EVERY_S)
+    due = elapsed.lasted(self._kept_s, time_s, _EVERY_S)
     if due and len(self._kept) < _KEPT:
       self._kept.append(grey)
       self._kept_s = time_s

@@ -8,7 +8,7 @@ import dataclasses
 import numpy as np
 
 from waggle_tasks import errors
-from waggle_tasks.agents import config
+from waggle_tasks.agents import elapsed
 from waggle_tasks.protocol import agreement as agreement_lib
 from waggle_tasks.protocol import flight, payload, reference
 
@@ -108,5 +108,5 @@ class Navigator:
       self._there_since_s = np.nan
     elif np.isnan(self._there_since_s):
       self._there_since_s = time_s
-    if config.lasted(self._there_since_s, time_s, flight.ARRIVAL_DWELL_S):
+    if elapsed.lasted(self._there_since_s, time_s, flight.ARRIVAL_DWELL_S):
       self.arrival_s = time_s

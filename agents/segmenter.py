@@ -9,7 +9,7 @@ import math
 import numpy as np
 
 from waggle_tasks.agents import config as config_lib
-from waggle_tasks.agents import klt
+from waggle_tasks.agents import elapsed, klt
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -61,21 +61,21 @@ class Segmenter:
         del self._tracks[:-1]
       elif math.isnan(self._fast_since_s):
         self._fast_since_s = track.time_s
-      if config_lib.lasted(self._fast_since_s, track.time_s, self._motion.on_s):
+      if elapsed.lasted(self._fast_since_s, track.time_s, self._motion.on_s):
         self.active, self._slow_since_s = True, math.nan
       return None
     if track.speed_px_s >= self._motion.off_px_s:
       self._slow_since_s = math.nan
     elif math.isnan(self._slow_since_s):
       self._slow_since_s = track.time_s
-    if config_lib.lasted(self._slow_since_s, track.time_s, self._motion.off_s):
+    if elapsed.lasted(self._slow_since_s, track.time_s, self._motion.off_s):
       return self._finish(self._slow_since_s, None)
     return None
 
   def _lose(self, track: klt.Track) -> Segment | None:
     if math.isnan(self._lost_since_s):
       self._lost_since_s = track.time_s
-    if not config_lib.lasted(
+    if not elapsed.lasted(
       self._lost_since_s, track.time_s, self._tracking.coast_s
     ):
       return None

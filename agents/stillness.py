@@ -8,7 +8,7 @@ import math
 import numpy as np
 
 from waggle_tasks.agents import config as config_lib
-from waggle_tasks.agents import klt, wander
+from waggle_tasks.agents import elapsed, klt, wander
 
 
 class StillnessDetector:
@@ -84,8 +84,8 @@ class StillnessDetector:
     if math.isnan(self._in_sight_s):
       self._in_sight_s = now_s
     if self._confirmed or not (
-      config_lib.lasted(self.since_s, now_s, self._config.hold_s)
-      and config_lib.lasted(self._in_sight_s, now_s, self._config.in_sight_s)
+      elapsed.lasted(self.since_s, now_s, self._config.hold_s)
+      and elapsed.lasted(self._in_sight_s, now_s, self._config.in_sight_s)
     ):
       return False
     self._confirmed = True
