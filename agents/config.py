@@ -72,7 +72,7 @@ class Differencing(group.Group):
     middle_widths: ...or so many apparent widths.
     lost_share: Smallest share of the hovering target's difference.
     most_share: Largest share of it: a target that comes close grows.
-    most_wider: How many times wider or narrower it may come to look, 0 for any...
+    most_wider: How many times wider or narrower it may come to look, 0: any...
     most_higher: ...and higher: what is flat looks so from above and below.
     reach_widths: How far from where it hovered, in apparent widths, it is
       sought when it was lost, 0 for anywhere.

@@ -38,9 +38,9 @@ class Reader:
     self._view, self.word = self._survive()
     self._smooth()
 
-  def again(self, word: Sequence[int]) -> None:
-    """Sees the frame as a word, and what there is from there."""
-    self.word = np.array(word, int)
+  def again(self, word: np.ndarray) -> None:
+    """Sees the frame as another word (N,), and what there is from there."""
+    self.word = word
     self._smooth()
 
   def _survive(self) -> tuple[int, np.ndarray]:

@@ -7,6 +7,7 @@ has the best poses, and what they cost, for many words at once.
 """
 
 import dataclasses
+from typing import Any
 
 import numpy as np
 
@@ -60,7 +61,7 @@ class Evidence:
       np.einsum('t,...tc->...', trust, off_m**2),
     )
 
-  def __getitem__(self, index: object) -> 'Evidence':
+  def __getitem__(self, index: Any) -> 'Evidence':
     return Evidence(self.square[index], self.linear[index], self.rest[index])
 
 
@@ -84,7 +85,7 @@ class Beliefs:
     covariance = np.broadcast_to(_BEFORE, (*shape, SIZE, SIZE))
     return cls(np.zeros((*shape, SIZE)), covariance, np.zeros(shape))
 
-  def __getitem__(self, index: object) -> 'Beliefs':
+  def __getitem__(self, index: Any) -> 'Beliefs':
     return Beliefs(self.mean[index], self.covariance[index], self.cost[index])
 
   def seen(self, found: Evidence) -> 'Beliefs':
