@@ -7,10 +7,11 @@ has the best poses, and what they cost, for many words at once.
 """
 
 import dataclasses
-from typing import Any
 
 import numpy as np
 
+_One = int | slice | np.ndarray | np.integer | None
+_Index = _One | tuple[_One, ...]
 # Of a pose: right and down in m, lateness in s, and size as a share.
 SIZE = 4
 # How exactly a dancer is seen in one second, in m.
@@ -61,7 +62,7 @@ class Evidence:
       np.einsum('t,...tc->...', trust, off_m**2),
     )
 
-  def __getitem__(self, index: Any) -> 'Evidence':
+  def __getitem__(self, index: _Index) -> 'Evidence':
     return Evidence(self.square[index], self.linear[index], self.rest[index])
 
 
@@ -85,7 +86,7 @@ class Beliefs:
     covariance = np.broadcast_to(_BEFORE, (*shape, SIZE, SIZE))
     return cls(np.zeros((*shape, SIZE)), covariance, np.zeros(shape))
 
-  def __getitem__(self, index: Any) -> 'Beliefs':
+  def __getitem__(self, index: _Index) -> 'Beliefs':
     return Beliefs(self.mean[index], self.covariance[index], self.cost[index])
 
   def seen(self, found: Evidence) -> 'Beliefs':
