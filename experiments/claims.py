@@ -16,7 +16,13 @@ from absl import flags
 
 from waggle_tasks import errors
 from waggle_tasks.experiments import launch
-from waggle_tasks.experiments.claim_parts import book, check, documents, finding
+from waggle_tasks.experiments.claim_parts import (
+  book,
+  check,
+  documents,
+  finding,
+  kinds,
+)
 from waggle_tasks.experiments.flags import engine_flag
 from waggle_tasks.experiments.machine import table
 from waggle_tasks.protocol import checks
@@ -82,7 +88,7 @@ def listing() -> str:
       for name, each in book.SENTENCES.items()
     ),
     *(
-      (name, each.block, book.HOWS[each.how], ' '.join(each.command))
+      (name, each.block, kinds.HOWS[each.how], ' '.join(each.command))
       for name, each in book.CLAIMS.items()
     ),
   ]

@@ -14,6 +14,7 @@ from waggle_tasks.experiments.claim_parts import (
   compare,
   documents,
   finding,
+  kinds,
 )
 
 Waggle = Callable[..., subprocess.CompletedProcess[str]]
@@ -128,8 +129,8 @@ def test_a_number_of_a_sentence_that_was_changed_is_named(
   assert "says 'reads 52/53 and passes', made '53, 53'" in child.stdout
 
 
-SMALL = book.Claim(
-  'small', book.CELLS,
+SMALL = kinds.Claim(
+  'small', kinds.CELLS,
   (
     'sweep', '--control=no_send', '--duration_s=1', '--observers=1',
     '--grid=distance_m=0.8,1.3', '--grid=noise_sigma=0',

@@ -14,6 +14,7 @@ from waggle_tasks.experiments.record import moves
 from waggle_tasks.protocol import (
   agreement,
   clock,
+  decoy_figures,
   decoys,
   frame,
   gestures,
@@ -136,7 +137,7 @@ def test_a_navigation_flight_rests_where_it_came_to() -> None:
 
 def test_the_way_out_of_the_plane_leads_away_from_the_audience() -> None:
   dancer = performer.Performer()
-  figure = decoys.Figure(np.array([(0, 0, 0), (0.1, 0.2, 0.3)]), 3.0)
+  figure = decoy_figures.Figure(np.array([(0, 0, 0), (0.1, 0.2, 0.3)]), 3.0)
   dancer.perform(schedule.Schedule((schedule.Slot(figure, 0.0),)))
   place, velocity, _ = dancer.motion(np.zeros(3), -math.pi / 2, 5.0)
   np.testing.assert_allclose(place, (0.1, 0.3, 0.2), atol=1e-12)

@@ -5,59 +5,9 @@ a part of the one that stands above the table, small enough that all of them
 together take less than 30 minutes on two cores.
 """
 
-from collections.abc import Sequence
-import dataclasses
 from typing import Any
 
-TEXT, ROWS, CELLS, PART = 'text', 'rows', 'cells', 'part'
-COPY, SUM, UNCHECKED = 'copy', 'sum', 'unchecked'
-HOWS = {
-  TEXT: 'every line of the block is printed again',
-  ROWS: 'every row and every failure that is printed is in the block',
-  CELLS: 'so is every cell of a sweep, with its limits',
-  PART: 'counts of a part fit into those of the whole',
-  COPY: 'every line is in another block too',
-  SUM: 'it is the sum of the other blocks of its document',
-  UNCHECKED: 'nothing is compared',
-}
-
-
-@dataclasses.dataclass(frozen=True)
-class Claim:
-  """A claim of a document.
-
-  Attributes:
-    block: The name that its block is marked with.
-    how: One of `HOWS`.
-    command: Arguments of `waggle` that make a part of it; may be empty.
-    table: Number of the table in the block, from 0; None for any that fits.
-    detail: Another block; blocks, and titles of tables, that are
-      left out of a sum; or why nothing is compared.
-  """
-
-  block: str
-  how: str
-  command: Sequence[str] = ()
-  table: int | None = None
-  detail: str = ''
-
-
-@dataclasses.dataclass(frozen=True)
-class Sentence:
-  """Numbers in a sentence that stand in blocks too.
-
-  Attributes:
-    document: Where the sentence is.
-    pattern: What finds the numbers in it.
-    blocks: Where they come from; of several the sum.
-    source: What finds the numbers in these.
-  """
-
-  document: str
-  pattern: str
-  blocks: Sequence[str]
-  source: str
-
+from waggle_tasks.experiments.claim_parts import kinds
 
 _DECOYS: dict[str, Any] = {
   'control': 'circles,diagonals,random_walk,navigation,swapped,repeated,'
@@ -76,28 +26,28 @@ def _sweep(
   *flags: str,
   receiver: str = 'view_bank',
   observers: int = 5,
-  how: str = CELLS,
+  how: str = kinds.CELLS,
   table: int | None = None,
   **grid: str,
-) -> Claim:
+) -> kinds.Claim:
   """Some cells of a sweep of random payloads."""
   command = (
     'sweep', f'--receiver={receiver}', '--payload=random',
     f'--observers={observers}', f'--repeats={repeats}', *flags,
     *(f'--grid={name}={values}' for name, values in grid.items()),
   )  # fmt: skip
-  return Claim(block, how, command, table)
+  return kinds.Claim(block, how, command, table)
 
 
-def _hidden(receiver: str) -> Claim:
+def _hidden(receiver: str) -> kinds.Claim:
   return _sweep(
     f'hidden-{receiver}', 1, '--replays=4', *_FAST, receiver=receiver,
-    observers=1, how=PART, control='seven_bits,begun_anew,run_together',
+    observers=1, how=kinds.PART, control='seven_bits,begun_anew,run_together',
     distance_m='1.3',
   )  # fmt: skip
 
 
-def _disturbed(table: int, *flags: str, **grid: str) -> Claim:
+def _disturbed(table: int, *flags: str, **grid: str) -> kinds.Claim:
   values: dict[str, Any] = grid  # None of the names of other arguments.
   return _sweep('disturbances', 2, *flags, table=table, **values)
 
@@ -105,8 +55,8 @@ def _disturbed(table: int, *flags: str, **grid: str) -> Claim:
 _SWAY = '--observer_drift_m=0.002', '--observer_yaw_drift_deg=0.1'
 
 CLAIMS = {
-  'main-job': Claim('main-job', TEXT, ('broadcast',)),
-  'main-totals': Claim('main-totals', COPY, detail='paper'),
+  'main-job': kinds.Claim('main-job', kinds.TEXT, ('broadcast',)),
+  'main-totals': kinds.Claim('main-totals', kinds.COPY, detail='paper'),
   'map-far-aside': _sweep(
     'map', 5, observers=1, noise_sigma='10', distance_m='3.0', bearing_deg='75'
   ),
@@ -128,12 +78,12 @@ CLAIMS = {
     'klt-map', 3, receiver='klt', observers=1, distance_m='1.3,2.0',
     bearing_deg='45',
   ),
-  'payloads': Claim(
-    'payloads', PART,
+  'payloads': kinds.Claim(
+    'payloads', kinds.PART,
     ('sweep', '--receiver=view_bank', '--grid=payload=010101,111111'),
   ),
-  'sway-default': Claim(
-    'sway-default', TEXT,
+  'sway-default': kinds.Claim(
+    'sway-default', kinds.TEXT,
     (
       'sweep', '--receiver=view_bank', '--repeats=5',
       '--grid=observer_drift_m=0.002', '--grid=observer_yaw_drift_deg=0.1',
@@ -145,11 +95,11 @@ CLAIMS = {
   ),
   'sway-noise': _sweep('sway', 2, *_SWAY, table=1, noise_sigma='10'),
   'sway-dancer': _sweep('sway', 2, table=2, performer_drift_m='0.002'),
-  'hover': Claim('hover', TEXT, ('drift',)),
-  'crossings': Claim(
-    'crossings', UNCHECKED, detail='a thousand crossings take 13 minutes'
+  'hover': kinds.Claim('hover', kinds.TEXT, ('drift',)),
+  'crossings': kinds.Claim(
+    'crossings', kinds.UNCHECKED, detail='a thousand crossings take 13 minutes'
   ),
-  'languages': Claim('languages', TEXT, ('languages',)),
+  'languages': kinds.Claim('languages', kinds.TEXT, ('languages',)),
   'gentle': _sweep(
     'gentle', 1, '--language=gentle', '--dynamics=rotors', receiver='joint',
     observers=1, distance_m='3.0', bearing_deg='75',
@@ -179,25 +129,25 @@ CLAIMS = {
   'repeated': _disturbed(12, repeated_share='0.3'),
   'step': _disturbed(13, '--step_s=40', step_gain='2'),
   'sun': _disturbed(14, sun='moving'),
-  'decoys': _sweep('decoys', 1, how=PART, **_DECOYS),
+  'decoys': _sweep('decoys', 1, how=kinds.PART, **_DECOYS),
   'decoys-wide': _sweep(
-    'decoys-wide', 1, '--distance_m=1.0', '--half_span_deg=75', how=PART,
+    'decoys-wide', 1, '--distance_m=1.0', '--half_span_deg=75', how=kinds.PART,
     **_DECOYS,
   ),
   'decoys-noise': _sweep(
-    'decoys-noise', 1, '--noise_sigma=10', how=PART, **_DECOYS
+    'decoys-noise', 1, '--noise_sigma=10', how=kinds.PART, **_DECOYS
   ),
   # Of the receiver that it speaks of: the tables of others are left out.
-  'together': Claim(
-    'together', SUM,
+  'together': kinds.Claim(
+    'together', kinds.SUM,
     detail='klt-map klt view_bank:max_repeated=1 distinct hidden-klt'
     ' hidden-view_bank last-rest',
   ),
-  'distinct': Claim(
-    'distinct', UNCHECKED, detail='arithmetic of the counts told above it'
+  'distinct': kinds.Claim(
+    'distinct', kinds.UNCHECKED, detail='arithmetic of the counts told above it'
   ),
-  'living-cameras': Claim(
-    'living-cameras', UNCHECKED, detail='of an older test of life'
+  'living-cameras': kinds.Claim(
+    'living-cameras', kinds.UNCHECKED, detail='of an older test of life'
   ),
   'hidden-klt': _hidden('klt'),
   'hidden-view_bank': _hidden('view_bank'),
@@ -209,96 +159,101 @@ CLAIMS = {
     'last-rest', 2, '--freeze_length_s=600', observers=3, table=0,
     receiver='klt', freeze_s='93', noise_sigma='0',
   ),
-  'link': Claim(
-    'link', ROWS,
+  'link': kinds.Claim(
+    'link', kinds.ROWS,
     (
       'link', '--schemes=swift,swift x3', '--conditions=calm,blackouts',
       '--broadcasts=4',
     ),
   ),
-  'link-paper': Claim(
-    'link-paper', ROWS,
+  'link-paper': kinds.Claim(
+    'link-paper', kinds.ROWS,
     (
       'link', '--schemes=paper,paper without nulls', '--conditions=mocap',
       '--broadcasts=2',
     ),
   ),
-  'link-places': Claim(
-    'link-places', ROWS,
+  'link-places': kinds.Claim(
+    'link-places', kinds.ROWS,
     (
       'link', '--schemes=swift', '--conditions=calm,noise', '--broadcasts=1',
       '--distances=0.6,1.3,3', '--bearings=0,60',
     ),
   ),
-  'link-codes': Claim(
-    'link-codes', UNCHECKED, detail='ten million messages each take minutes'
+  'link-codes': kinds.Claim(
+    'link-codes', kinds.UNCHECKED,
+    detail='ten million messages each take minutes',
   ),
-  'paper': Claim(
-    'paper', ROWS,
+  'paper': kinds.Claim(
+    'paper', kinds.ROWS,
     (
       'suite', '--case=one-observer,two-observers,distance-1-0,span-45,'
       'four-forward,no-send,black-input',
     ),
   ),
-  'paper-view-bank': Claim(
-    'paper-view-bank', ROWS,
+  'paper-view-bank': kinds.Claim(
+    'paper-view-bank', kinds.ROWS,
     (
       'suite', '--receiver=view_bank',
       '--case=one-observer,distance-1-0,span-45',
     ),
   ),
-  'sensitivity': Claim(
-    'sensitivity', PART,
+  'sensitivity': kinds.Claim(
+    'sensitivity', kinds.PART,
     (
       'sensitivity', '--variant=start-low,eye-back,jitter-3',
       '--case=distance-1-0,distance-1-6',
     ),
   ),
-  'ablations': Claim(
-    'ablations', PART, ('ablate', '--case=one-observer,distance-1-0')
+  'ablations': kinds.Claim(
+    'ablations', kinds.PART, ('ablate', '--case=one-observer,distance-1-0')
   ),
   'ablations-decoys': _sweep(
-    'ablations-decoys', 1, receiver=f'view_bank:{_BARE}', how=PART,
+    'ablations-decoys', 1, receiver=f'view_bank:{_BARE}', how=kinds.PART,
     control='half_frame',
   ),
   'ablations-decoys-klt': _sweep(
     'ablations-decoys', 1, receiver=f'klt:{_BARE},forward_backward=off',
-    how=PART, control='half_frame',
+    how=kinds.PART, control='half_frame',
   ),
-  'boundary': Claim('boundary', TEXT, ('boundary', '--half_span_deg=45')),
-  'timings': Claim(
-    'timings', UNCHECKED, detail='times and memory, which differ between runs'
+  'boundary': kinds.Claim(
+    'boundary', kinds.TEXT, ('boundary', '--half_span_deg=45')
   ),
-  'pictures': Claim(
-    'pictures', UNCHECKED, detail='a test compares pictures with every run'
+  'timings': kinds.Claim(
+    'timings', kinds.UNCHECKED,
+    detail='times and memory, which differ between runs',
   ),
-  'event-logs': Claim(
-    'event-logs', ROWS, ('bench', '--check_events', '--suite=controls')
+  'pictures': kinds.Claim(
+    'pictures', kinds.UNCHECKED,
+    detail='a test compares pictures with every run',
+  ),
+  'event-logs': kinds.Claim(
+    'event-logs', kinds.ROWS, ('bench', '--check_events', '--suite=controls')
   ),
 }  # fmt: skip
 
 _RIGHT = r'^right: (\d+)/(\d+) exposures'
 SENTENCES = {
-  'readme-map': Sentence(
+  'readme-map': kinds.Sentence(
     'README.md', r'read (\S+) of the (\S+) messages of this map',
     ('map', 'noisy', 'far', 'grazing'), _RIGHT,
   ),
-  'readme-klt': Sentence(
+  'readme-klt': kinds.Sentence(
     'README.md', r'`klt` read (\S+) of (\d+)', ('klt-map',), _RIGHT
   ),
-  'readme-exposures': Sentence(
+  'readme-exposures': kinds.Sentence(
     'README.md', r'In all of (\S+) exposures', ('together',),
     r'^right: \d+/(\d+) ',
   ),
-  'readme-limit': Sentence(
+  'readme-limit': kinds.Sentence(
     'README.md', r'at most (\S+) %, with 95 % confidence', ('distinct',),
     r'^(\S+)%$',
   ),
-  'readme-view-bank': Sentence(
+  'readme-view-bank': kinds.Sentence(
     'README.md', r'reads (\d+)/(\d+) and passes', ('paper-view-bank',),
     r'^messages correct: (\d+)/(\d+) ',
   ),
-  'readme-groups': Sentence(
+  'readme-groups': kinds.Sentence(
     'README.md', r'and passes (\d+)/(\d+) from', ('paper-view-bank',),
     r'^broadcasts passed: (\d+)/(\d+) ',
   ),

@@ -14,6 +14,7 @@ from waggle_tasks.experiments.claim_parts import (
   compare,
   documents,
   finding,
+  kinds,
 )
 from waggle_tasks.experiments.studies import case_rows
 
@@ -27,7 +28,7 @@ class RerunError(errors.WaggleError):
 
 
 def claim(
-  each: book.Claim, library: documents.Library, workers: int
+  each: kinds.Claim, library: documents.Library, workers: int
 ) -> list[finding.Finding]:
   """Makes what a claim is about again, and compares.
 
@@ -42,23 +43,23 @@ def claim(
   block = library.blocks.get(each.block)
   if block is None:
     return [_lost(f'no block is marked <!-- claim: {each.block} -->')]
-  if each.how == book.UNCHECKED:
+  if each.how == kinds.UNCHECKED:
     words = f'{len(block.lines)} lines: {each.detail}'
     return [finding.Finding(finding.UNCHECKED, block.place(), words)]
-  if each.how == book.COPY:
+  if each.how == kinds.COPY:
     other = library.blocks.get(each.detail, documents.block_of(''))
     return compare.text(block, other)
-  if each.how == book.SUM:
+  if each.how == kinds.SUM:
     return [_sum(block, library, each.detail.split())]
   with tempfile.TemporaryDirectory() as home:
     folder = pathlib.Path(home, 'out')
     printed = _run(each.command, folder, workers)
     match each.how:
-      case book.TEXT:
+      case kinds.TEXT:
         return compare.text(block, printed)
-      case book.ROWS:
+      case kinds.ROWS:
         return compare.rows(block, printed)
-      case book.CELLS:
+      case kinds.CELLS:
         rows = case_rows.read_sweep(folder)
         return compare.cells(block, rows, each.table)
     return compare.part(block, printed)
@@ -108,7 +109,7 @@ def _sum(
 
 
 def sentence(
-  each: book.Sentence, library: documents.Library
+  each: kinds.Sentence, library: documents.Library
 ) -> finding.Finding:
   """The numbers of a sentence beside those of the blocks they stand for."""
   found = re.search(each.pattern, library.words.get(each.document, ''))
