@@ -9,6 +9,7 @@ board shows from every side.
 
 from collections.abc import Iterator, Sequence
 import dataclasses
+import functools
 import math
 
 from dm_control import mjcf
@@ -66,25 +67,29 @@ def draw(body: mjcf.Element, accent_rgba: Rgba, spinning: bool = False) -> None:
     spinning: Whether the propellers turn: their blades are a blur then, which
       is the same in every picture.
   """
-  for part in parts(accent_rgba, spinning):
-    solid = shapes.joined(part.solids)
-    mesh = body.root.asset.add(
-      'mesh',
-      name=part.name,
-      vertex=solid.vertices_m.ravel(),
-      face=solid.faces.ravel(),
-    )
+  for name, rgba, file in _drawn(tuple(accent_rgba), spinning):
+    mesh = body.root.asset.add('mesh', name=name, file=file)
     body.add(
       'geom',
-      name=part.name,
+      name=name,
       type='mesh',
       mesh=mesh,
-      rgba=part.rgba,
+      rgba=rgba,
       mass=0.0,
       contype=0,
       conaffinity=0,
       group=0,
     )
+
+
+@functools.cache  # Every vehicle of every environment looks so.
+def _drawn(
+  accent_rgba: Rgba, spinning: bool
+) -> tuple[tuple[str, Rgba, mjcf.Asset], ...]:
+  return tuple(
+    (part.name, part.rgba, mjcf.Asset(shapes.joined(part.solids).msh, '.msh'))
+    for part in parts(accent_rgba, spinning)
+  )
 
 
 def enclose(body: mjcf.Element) -> None:
