@@ -4,8 +4,8 @@ import dataclasses
 import html
 import pathlib
 import re
-import types
 
+import chromium
 import pytest
 
 from waggle_tasks import scenario
@@ -165,10 +165,9 @@ def test_without_final_null_the_message_stands_and_the_group_fails(
 @pytest.mark.parametrize('width', [1280, 820])
 @pytest.mark.parametrize('name', NAMES)
 def test_no_limit_overlaps_another_word(
-  chromium: types.ModuleType, runs: dict[str, Run], name: str, width: int
+  browser: chromium.Browser, runs: dict[str, Run], name: str, width: int
 ) -> None:
-  with chromium.Browser() as browser:
-    browser.open(runs[name].folder / document.NAME)
-    browser.resize(width, 800)
-    assert browser.eval(chromium.OVERLAPS) == []
-    assert browser.eval(chromium.CLIPPED) == []
+  browser.open(runs[name].folder / document.NAME)
+  browser.resize(width, 800)
+  assert browser.eval(chromium.OVERLAPS) == []
+  assert browser.eval(chromium.CLIPPED) == []
