@@ -68,7 +68,8 @@ def _stand_by() -> None:
       _become(*json.loads(line))
       return
     status = os.waitstatus_to_exitcode(os.waitpid(pid, 0)[1])
-    print(status, flush=True)
+    sys.stdout.write(f'{status}\n')
+    sys.stdout.flush()
   sys.exit()
 
 
