@@ -15,7 +15,7 @@ import math
 from dm_control import mjcf
 import numpy as np
 
-from waggle_tasks import runtime
+from waggle_tasks import msh, runtime
 from waggle_tasks.entities import shapes
 
 runtime.require_versions()
@@ -86,10 +86,12 @@ def draw(body: mjcf.Element, accent_rgba: Rgba, spinning: bool = False) -> None:
 def _drawn(
   accent_rgba: Rgba, spinning: bool
 ) -> tuple[tuple[str, Rgba, mjcf.Asset], ...]:
-  return tuple(
-    (part.name, part.rgba, mjcf.Asset(shapes.joined(part.solids).msh, '.msh'))
-    for part in parts(accent_rgba, spinning)
-  )
+  out = []
+  for part in parts(accent_rgba, spinning):
+    solid = shapes.joined(part.solids)
+    file = mjcf.Asset(msh.pack(solid.vertices_m, solid.faces), '.msh')
+    out.append((part.name, part.rgba, file))
+  return tuple(out)
 
 
 def enclose(body: mjcf.Element) -> None:

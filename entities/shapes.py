@@ -34,18 +34,6 @@ class Solid:
     """Returns the mirror image in y."""
     return Solid(self.vertices_m * (1.0, -1.0, 1.0), self.faces[:, ::-1])
 
-  @property
-  def msh(self) -> bytes:
-    """As a file of MuJoCo's own format, which is read faster than text."""
-    counts = np.array([len(self.vertices_m), 0, 0, len(self.faces)], np.int32)
-    return b''.join(
-      [
-        counts.tobytes(),
-        self.vertices_m.astype(np.float32).tobytes(),
-        self.faces.astype(np.int32).tobytes(),
-      ]
-    )
-
 
 def joined(solids: Iterable[Solid]) -> Solid:
   """Returns all the surfaces as one; they may touch or overlap."""

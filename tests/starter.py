@@ -7,6 +7,7 @@ nothing of GL is there, which would not survive it.
 """
 
 from collections.abc import Sequence
+import contextlib
 import json
 import os
 import pathlib
@@ -89,9 +90,13 @@ def _become(arguments: list[str], folder: str, out: str, err: str) -> None:
 if __name__ == '__main__':
   import runpy
 
-  # Without flags, and without what draws.
-  from waggle_tasks import scenario  # noqa: F401
-  from waggle_tasks.experiments.pages import link_page, run_page, suite_page  # noqa: F401
+  # ruff: noqa: F401
+  # Without flags, and without what draws in the simulator.
+  from waggle_tasks import scenario
+  from waggle_tasks.experiments.pages import link_page, run_page, suite_page
+
+  with contextlib.suppress(ImportError):  # An extra.
+    from matplotlib import figure
 
   _stand_by()
   runpy.run_module(_MAIN, run_name='__main__', alter_sys=True)
