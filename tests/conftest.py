@@ -72,20 +72,17 @@ def waggle(new_waggle: Waggle) -> Iterator[Waggle]:
 
   It is a new Python only where the environment is another one.
   """
-  starters = []
+  ready = starter.Starter()
 
   def run(
     *arguments: str, cwd: pathlib.Path | None = None, **environment: str
   ) -> subprocess.CompletedProcess[str]:
-    if not starters:
-      starters.append(starter.Starter())
-    if environment or not starters[0].is_as_new:
+    if environment or not ready.is_as_new:
       return new_waggle(*arguments, cwd=cwd, **environment)
-    return starters[0].run(arguments, cwd)
+    return ready.run(arguments, cwd)
 
   yield run
-  for each in starters:
-    each.close()
+  ready.close()
 
 
 # Python and dm_control take a second to start, so that one process takes every

@@ -35,7 +35,7 @@ class Tape:
     """Takes an image of the same size."""
     part = None
     rows = _differing(image, self.first)
-    if rows is not None:
+    if rows.start < rows.stop:
       # Along rows, as images lie in memory, all of it is compared; across
       # them, only where something is.
       turned = (each[rows].swapaxes(0, 1) for each in (image, self.first))
@@ -57,11 +57,11 @@ class Tape:
       yield image, time_s
 
 
-def _differing(image: np.ndarray, other: np.ndarray) -> slice | None:
-  """From the first to the last row that differs; None where none does."""
+def _differing(image: np.ndarray, other: np.ndarray) -> slice:
+  """From the first to the last row that differs; empty where none does."""
   changed = image.reshape(len(image), -1) != other.reshape(len(other), -1)
   rows = np.flatnonzero(changed.any(axis=1))
-  return slice(int(rows[0]), int(rows[-1]) + 1) if len(rows) else None
+  return slice(int(rows[0]), int(rows[-1]) + 1) if len(rows) else slice(0, 0)
 
 
 def record(
