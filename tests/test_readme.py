@@ -6,10 +6,8 @@ import json
 import pathlib
 import re
 
-from dm_control import composer
 import pytest
 
-import waggle_tasks
 from waggle_tasks import scenario
 from waggle_tasks.experiments import main
 from waggle_tasks.experiments.record import nulls, writer
@@ -54,25 +52,6 @@ def test_the_loop_reads_and_flies_a_message(
 
 
 def test_a_faster_language_is_read_by_the_same_loop(
-  namespace: dict[str, object],
-) -> None:
-  """Up to its first bit, to which the paper's has not come by then."""
-  read = []
-
-  def fly(environment: composer.Environment, team: waggle_tasks.Team) -> None:
-    timestep = environment.reset()
-    while float(timestep.observation[0]['time_s']) < 20.0:
-      timestep = environment.step(team.step(timestep.observation))
-    environment.close()
-    for agent in team.agents:
-      read.append([str(event.symbol) for event in agent.events][:4])
-
-  run(BLOCKS[1], {**namespace, 'fly': fly})
-  assert read == [['NULL', 'START', 'NULL', '0']] * 2
-
-
-@pytest.mark.slow
-def test_a_faster_language_is_read_to_its_end(
   namespace: dict[str, object],
 ) -> None:
   out = run(BLOCKS[1], namespace)
