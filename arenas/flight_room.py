@@ -6,7 +6,7 @@ import math
 from dm_control import composer, mjcf
 import numpy as np
 
-from waggle_tasks import appearance, runtime
+from waggle_tasks import appearance, msh, runtime
 from waggle_tasks.arenas import bounds, clutter, layouts, scenery, shared_views
 from waggle_tasks.arenas import sun as sun_lib
 from waggle_tasks.protocol import agreement as agreement_lib
@@ -233,9 +233,9 @@ class FlightRoom(composer.Arena):
     self._mjcf_root.asset.add(
       'mesh',
       name=name,
-      vertex=mesh.vertices_m.ravel(),
-      normal=mesh.normals.ravel(),
-      face=mesh.faces.ravel(),
+      file=mjcf.Asset(
+        msh.pack(mesh.vertices_m, mesh.faces, mesh.normals), '.msh'
+      ),
       inertia='shell',
     )
 

@@ -11,6 +11,7 @@ import math
 from dm_control import mjcf
 import numpy as np
 
+from waggle_tasks import msh
 from waggle_tasks.arenas import scenery
 
 # Of a Crazyflie: see `entities.airframe`.
@@ -44,9 +45,9 @@ class Sun:
     room.asset.add(
       'mesh',
       name='shadow',
-      vertex=outline.vertices_m.ravel(),
-      normal=outline.normals.ravel(),
-      face=outline.faces.ravel(),
+      file=mjcf.Asset(
+        msh.pack(outline.vertices_m, outline.faces, outline.normals), '.msh'
+      ),
       inertia='shell',
     )
     self._light = room.worldbody.add(

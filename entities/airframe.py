@@ -9,12 +9,13 @@ board shows from every side.
 
 from collections.abc import Iterator, Sequence
 import dataclasses
+import functools
 import math
 
 from dm_control import mjcf
 import numpy as np
 
-from waggle_tasks import runtime
+from waggle_tasks import msh, runtime
 from waggle_tasks.entities import shapes
 
 runtime.require_versions()
@@ -66,25 +67,31 @@ def draw(body: mjcf.Element, accent_rgba: Rgba, spinning: bool = False) -> None:
     spinning: Whether the propellers turn: their blades are a blur then, which
       is the same in every picture.
   """
-  for part in parts(accent_rgba, spinning):
-    solid = shapes.joined(part.solids)
-    mesh = body.root.asset.add(
-      'mesh',
-      name=part.name,
-      vertex=solid.vertices_m.ravel(),
-      face=solid.faces.ravel(),
-    )
+  for name, rgba, file in _drawn(tuple(accent_rgba), spinning):
+    mesh = body.root.asset.add('mesh', name=name, file=file)
     body.add(
       'geom',
-      name=part.name,
+      name=name,
       type='mesh',
       mesh=mesh,
-      rgba=part.rgba,
+      rgba=rgba,
       mass=0.0,
       contype=0,
       conaffinity=0,
       group=0,
     )
+
+
+@functools.cache  # Every vehicle of every environment looks so.
+def _drawn(
+  accent_rgba: Rgba, spinning: bool
+) -> tuple[tuple[str, Rgba, mjcf.Asset], ...]:
+  out = []
+  for part in parts(accent_rgba, spinning):
+    solid = shapes.joined(part.solids)
+    file = mjcf.Asset(msh.pack(solid.vertices_m, solid.faces), '.msh')
+    out.append((part.name, part.rgba, file))
+  return tuple(out)
 
 
 def enclose(body: mjcf.Element) -> None:

@@ -20,6 +20,7 @@ import dm_env
 import hypothesis
 import numpy as np
 import pytest
+import starter
 
 from waggle_tasks import registry
 from waggle_tasks.protocol import agreement, flight, gestures, reference, timing
@@ -34,6 +35,7 @@ hypothesis.settings.load_profile('patient')
 
 Observations = Sequence[dict[str, np.ndarray]]
 Agent = Callable[[Observations], list[np.ndarray]]
+Waggle = Callable[..., subprocess.CompletedProcess[str]]
 
 
 def pytest_configure() -> None:
@@ -46,8 +48,8 @@ def pytest_configure() -> None:
 
 
 @pytest.fixture(scope='session')
-def waggle() -> Callable[..., subprocess.CompletedProcess[str]]:
-  """Runs `waggle` in a new process, as a launcher's flags are global."""
+def new_waggle() -> Waggle:
+  """Runs `waggle` in a new Python."""
 
   def run(
     *arguments: str, cwd: pathlib.Path | None = None, **environment: str
@@ -62,6 +64,25 @@ def waggle() -> Callable[..., subprocess.CompletedProcess[str]]:
     )
 
   return run
+
+
+@pytest.fixture(scope='session')
+def waggle(new_waggle: Waggle) -> Iterator[Waggle]:
+  """Runs `waggle` in a process of its own, as a launcher's flags are global.
+
+  It is a new Python only where the environment is another one.
+  """
+  ready = starter.Starter()
+
+  def run(
+    *arguments: str, cwd: pathlib.Path | None = None, **environment: str
+  ) -> subprocess.CompletedProcess[str]:
+    if environment or not ready.is_as_new:
+      return new_waggle(*arguments, cwd=cwd, **environment)
+    return ready.run(arguments, cwd)
+
+  yield run
+  ready.close()
 
 
 # Python and dm_control take a second to start, so that one process takes every

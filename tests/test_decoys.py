@@ -44,11 +44,12 @@ def sampled(
   plan: schedule.Schedule, step_s: float = 0.01
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
   """Offset, velocity and acceleration, (T, 3) each, at even times."""
-  moments = [plan.motion(t) for t in np.arange(0, plan.end_s + 1, step_s)]
-  return tuple(
-    np.stack([np.pad(each, (0, 3 - len(each))) for each in column])
-    for column in zip(*moments, strict=True)
-  )
+  times_s = np.arange(0, plan.end_s + 1, step_s)
+  moments = np.zeros((3, len(times_s), 3))
+  for index, time_s in enumerate(times_s):
+    for column, each in zip(moments, plan.motion(time_s), strict=True):
+      column[index, : len(each)] = each
+  return tuple(moments)
 
 
 def test_all_decoys_are_tested() -> None:

@@ -151,7 +151,7 @@ def check_nobody_moved(played: Played, duration_s: float) -> None:
 
 
 def test_a_dance_that_stops_at_26_s_moves_nobody_until_60_s() -> None:
-  played = play('interrupted')
+  played = play('interrupted', observers=1)
   check_nobody_moved(played, 60.0)
   for events in played[1].events.values():
     # START and the first bit had been flown, the second had not.

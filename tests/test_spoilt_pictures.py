@@ -47,8 +47,8 @@ def lit(gain: Callable[[float], np.ndarray | float]) -> spoilers.Spoiler:
   """Light that changes by (480 or 1, 640 or 1, 3 or 1) gains of a time."""
 
   def change(image: np.ndarray, time_s: float) -> np.ndarray:
-    seen = image * np.asarray(gain(time_s), np.float32)
-    return np.clip(np.rint(seen), 0, 255).astype(np.uint8)
+    gains = np.broadcast_to(np.float32(gain(time_s)), image.shape)
+    return cv2.multiply(image, gains.copy(), dtype=cv2.CV_8U)
 
   return each(change)
 
@@ -74,8 +74,8 @@ def correlated(sigma: float, rows: int, columns: int) -> spoilers.Spoiler:
 
   def change(image: np.ndarray, time_s: float) -> np.ndarray:
     noise = rng.normal(0, sigma, (480 // rows, 640 // columns, 1))
-    noise = noise.repeat(rows, axis=0).repeat(columns, axis=1)
-    return np.clip(np.rint(image + noise), 0, 255).astype(np.uint8)
+    noise = noise.repeat(rows, axis=0).repeat(columns, axis=1).repeat(3, axis=2)
+    return cv2.add(image, noise, dtype=cv2.CV_8U)
 
   return each(change)
 

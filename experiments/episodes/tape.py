@@ -33,13 +33,13 @@ class Tape:
 
   def add(self, image: np.ndarray, time_s: float) -> None:
     """Takes an image of the same size."""
-    changed = (image != self.first).any(axis=-1)
     part = None
-    if changed.any():
-      rows, columns = (
-        slice(int(each[0]), int(each[-1]) + 1)
-        for each in (np.flatnonzero(changed.any(axis=a)) for a in (1, 0))
-      )
+    rows = _differing(image, self.first)
+    if rows.start < rows.stop:
+      # Along rows, as images lie in memory, all of it is compared; across
+      # them, only where something is.
+      turned = (each[rows].swapaxes(0, 1) for each in (image, self.first))
+      columns = _differing(*turned)
       part = (rows, columns), image[rows, columns].copy()
     self.times_s.append(time_s)
     self.parts.append(part)
@@ -55,6 +55,13 @@ class Tape:
         last, seen = part
         image[last] = seen
       yield image, time_s
+
+
+def _differing(image: np.ndarray, other: np.ndarray) -> slice:
+  """From the first to the last row that differs; empty where none does."""
+  changed = image.reshape(len(image), -1) != other.reshape(len(other), -1)
+  rows = np.flatnonzero(changed.any(axis=1))
+  return slice(int(rows[0]), int(rows[-1]) + 1) if len(rows) else slice(0, 0)
 
 
 def record(

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import functools
 
 import numpy as np
-from scipy import stats
+from scipy import special
 
 LEVEL = 0.95
 _RESAMPLES = 10_000
@@ -22,8 +22,9 @@ def clopper_pearson(successes: int, trials: int) -> tuple[float, float]:
     successes: At most `trials`.
     trials: At least 1.
   """
-  interval = stats.binomtest(successes, trials).proportion_ci(LEVEL, 'exact')
-  return float(interval.low), float(interval.high)
+  tail = (1 - LEVEL) / 2
+  low = 1 - _limit(trials - successes, trials, tail)
+  return low, _limit(successes, trials, tail)
 
 
 @functools.cache
@@ -37,8 +38,14 @@ def upper_limit(events: int, trials: int) -> float:
     events: At most `trials`.
     trials: At least 1.
   """
-  test = stats.binomtest(events, trials, alternative='less')
-  return float(test.proportion_ci(LEVEL, 'exact').high)
+  return _limit(events, trials, 1 - LEVEL)
+
+
+def _limit(events: int, trials: int, tail: float) -> float:
+  """The proportion of which so few events have the probability `tail`."""
+  if events == trials:
+    return 1.0
+  return float(special.bdtri(events, trials, tail))
 
 
 def bootstrap_by_broadcast(
@@ -73,4 +80,5 @@ def mcnemar(only_a: int, only_b: int) -> float:
   """
   if only_a + only_b == 0:
     return 1.0
-  return float(stats.binomtest(only_a, only_a + only_b).pvalue)
+  tail = special.bdtr(min(only_a, only_b), only_a + only_b, 0.5)
+  return min(1.0, 2 * float(tail))

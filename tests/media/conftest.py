@@ -1,12 +1,11 @@
 """One short broadcast with everything kept, and videos of a clip."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 import dataclasses
-import importlib
 import pathlib
 import shutil
-import types
 
+import chromium
 import cv2
 import numpy as np
 import pytest
@@ -22,8 +21,6 @@ from waggle_tasks.experiments.record import (
   writer,
 )
 from waggle_tasks.experiments.video import film
-
-HERE = pathlib.Path(__file__).parent
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -46,7 +43,7 @@ def recorded(
   )
   folder = tmp_path_factory.mktemp('run')
   with (
-    film.Film(folder, scene, fps=5.0, scale=0.5) as camera,
+    film.Film(folder, scene, fps=2.5, scale=0.5) as camera,
     capture.Recorder(folder) as recorder,
   ):
     rollout = rollout_lib.run(scene, 'klt', [camera, recorder])
@@ -105,13 +102,19 @@ def tiny(video: Callable[..., pathlib.Path]) -> Callable[..., pathlib.Path]:
   return write
 
 
+@pytest.fixture(scope='session')
+def window() -> Iterator[chromium.Browser]:
+  """A browser; skips where there is none."""
+  if chromium.find() is None:
+    pytest.skip(f'needs one of {", ".join(chromium.NAMES)}')
+  with chromium.Browser() as window:
+    yield window
+
+
 @pytest.fixture
-def chromium(
-  monkeypatch: pytest.MonkeyPatch,
-) -> types.ModuleType:
-  """The module that drives Chromium; skips where there is none."""
-  monkeypatch.syspath_prepend(HERE)
-  module = importlib.import_module('chromium')
-  if module.find() is None:
-    pytest.skip(f'needs one of {", ".join(module.NAMES)}')
-  return module
+def browser(window: chromium.Browser) -> chromium.Browser:
+  """The same browser as it was at first, for a page to be opened in."""
+  window.requests.clear()
+  window.media('screen')
+  window.resize(1280, 800)
+  return window

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 import fractions
+import functools
 import json
 import os
 import pathlib
@@ -45,6 +46,7 @@ def dance(
 ) -> Callable[..., pathlib.Path]:
   """The clip as a video, its pictures changed by a function."""
 
+  @functools.cache
   def write(
     change: Callable[[np.ndarray], np.ndarray] = np.ascontiguousarray,
     name: str = 'x.mp4',
@@ -235,12 +237,13 @@ def test_an_annotated_copy_shows_what_was_read_without_gl(
   no_gl: dict[str, str],
 ) -> None:
   path, source = tmp_path / 'seen.webm', dance()
-  child = waggle('decode', str(source), f'--annotate={path}', **no_gl)
+  part = ('--start=3', '--end=7')
+  child = waggle('decode', str(source), *part, f'--annotate={path}', **no_gl)
   assert child.returncode == 1, child.stderr  # No whole message in it.
   assert 'klt: no message' in child.stdout
   with recordings.Recording(path) as recording:
     pictures = [image.copy() for image, _ in recording.frames(Part())]
-    assert recording.length_s == pytest.approx(15.8, abs=0.2)
+    assert recording.length_s == pytest.approx(4.0, abs=0.2)
   assert pictures[0].shape[:2] > (480, 640)
   again = waggle('decode', str(source), f'--annotate={path}')
   assert again.returncode == 2

@@ -96,9 +96,11 @@ def test_the_video_lasts_as_long_as_the_run_at_its_rate(
   pictures = frames(recorded.folder / 'composite.webm')
   end_s = recorded.rollout.times_s[-1]
   np.testing.assert_allclose(
-    [time_s for time_s, _ in pictures], np.arange(len(pictures)) / 5, atol=1e-3
+    [time_s for time_s, _ in pictures],
+    np.arange(len(pictures)) / 2.5,
+    atol=1e-3,
   )
-  assert pictures[-1][0] == pytest.approx(end_s, abs=0.2)
+  assert pictures[-1][0] == pytest.approx(end_s, abs=0.4)
   plan = layout.plan(2, 0.5, 1)
   assert pictures[0][1].shape == (plan.height, plan.width, 3)
 
@@ -106,7 +108,7 @@ def test_the_video_lasts_as_long_as_the_run_at_its_rate(
 def test_an_observers_picture_is_what_it_sees(recorded: object) -> None:
   pictures = frames(recorded.folder / 'composite.webm')
   seeing, blind = layout.plan(2, 0.5, 1).observers
-  for _, picture in pictures[::50]:
+  for _, picture in pictures[::25]:
     assert picture[blind.slices].mean() < 20  # Black, but for its marks.
     assert picture[seeing.slices].mean() > 80
 
@@ -114,7 +116,8 @@ def test_an_observers_picture_is_what_it_sees(recorded: object) -> None:
 def colour_share(picture: np.ndarray, colour: str) -> float:
   """The share of a picture, BGR, that nearly has a colour."""
   wanted = np.array(palette.rgb(colour)[::-1], int)
-  return float((np.abs(picture - wanted).max(axis=2) < 40).mean())
+  near = cv2.inRange(picture, wanted - 39, wanted + 39)
+  return np.count_nonzero(near) / near.size
 
 
 def test_symbols_and_track_appear_as_they_are_read(recorded: object) -> None:

@@ -1,6 +1,6 @@
 """A small suite, its results when nothing disturbs it, and what to compare."""
 
-from collections.abc import Sequence
+from collections.abc import Generator, Sequence
 import dataclasses
 import functools
 import json
@@ -41,6 +41,17 @@ CLOCKED = {'provenance.json', 'seal.json'}
 PAGE = 'index.html'  # Of the suite: its launcher makes it.
 
 
+def _here(
+  jobs: Sequence[pool.Job],
+) -> Generator[pool.Advance | pool.Done]:
+  """Does jobs in this process, where no other is to be tested."""
+  for job in jobs:
+    told = []
+    value = job.do(told.append)
+    yield from (pool.Advance(job, amount) for amount in told)
+    yield pool.Done(job, value)
+
+
 @dataclasses.dataclass(frozen=True)
 class Own:
   """A suite of one's own and a folder for its results.
@@ -55,11 +66,11 @@ class Own:
 
   command = 'waggle suite --suite=own.json --receiver=klt'
 
-  def run(self, workers: int = 1) -> list[case_rows.SuiteRow]:
-    """Runs what is missing."""
+  def run(self, workers: int = 0) -> list[case_rows.SuiteRow]:
+    """Runs what is missing, in worker processes or in this one."""
     cases = suites.from_rows(self.rows)
     study = suite_study.Suite(cases, 'klt', run_page.leave)
-    engine = functools.partial(pool.run, workers=workers)
+    engine = functools.partial(pool.run, workers=workers) if workers else _here
     return runner.run(study, self.folder, engine, self.command)
 
   def results(self) -> dict[str, bytes]:
@@ -97,7 +108,7 @@ class Own:
 def reference(tmp_path_factory: pytest.TempPathFactory) -> Own:
   """Three cases, run one by one with nothing to disturb them."""
   own = Own(ROWS, tmp_path_factory.mktemp('reference') / 'results')
-  own.run()
+  own.run(workers=1)
   return own
 
 

@@ -83,7 +83,7 @@ def test_a_suite_of_ones_own_is_a_json_file(
   ]
   # With the mark that editors on Windows put in front.
   (tmp_path / 'mine.json').write_text(json.dumps(rows), encoding='utf-8-sig')
-  done = suite('--suite=mine.json', '--receiver=klt:hold_s=2.5')
+  done = suite('--suite=mine.json', '--receiver=klt:hold_s=2.5', '--workers=1')
   assert done.returncode == 1, done.stderr  # The second reads nothing.
   assert 'quiet: configuration' in done.stdout
   assert 'own: configuration' in done.stdout

@@ -144,7 +144,7 @@ def test_a_disk_full_in_a_case_is_one_line_and_the_next_run_ends_well(
   file_limit(8192)  # Less than a provenance.json.
   error = r'^`output` must be writable: blink could not be .*too large; .*kept$'
   with pytest.raises(folders.OutputError, match=error):
-    fresh_blink.run()
+    fresh_blink.run(workers=1)
   file_limit(None)
   assert len(flown) == 1  # Another flight would not make room.
   assert not [*(fresh_blink.folder / 'cases').iterdir()]

@@ -224,4 +224,6 @@ _known_peaks = functools.lru_cache(_peaks)
 
 def _whole(vector: np.ndarray) -> np.ndarray:
   """(3,) right, up and away of a (2,) or (3,) vector."""
-  return np.append(vector, np.zeros(3 - len(vector)))
+  whole = np.zeros(3)
+  whole[: len(vector)] = vector
+  return whole
