@@ -314,3 +314,13 @@ def test_importing_every_agent_module_reaches_no_simulator() -> None:
     "print({'dm_control', 'mujoco', 'waggle_tasks.entities'} & {*sys.modules})"
   )
   assert reached == 'set()'
+
+
+def test_no_file_is_longer_than_300_lines() -> None:
+  folders = 'waggle_tasks', 'entities', 'arenas', 'agents', 'experiments'
+  lines = {
+    str(path.relative_to(ROOT)): len(path.read_bytes().splitlines())
+    for folder in folders
+    for path in (ROOT / folder).rglob('*.py')
+  }
+  assert not {name for name, count in lines.items() if count > 300}

@@ -213,8 +213,8 @@ def test_what_joint_asks_of_a_frame_is_told_in_words() -> None:
   told = ' '.join(joint_description.of(swift, asked).frames)
   assert clear in told
   assert 'from any side' in told
-  assert 'of the hover point' in told
+  assert 'from the hover point' in told
   brisk = scenario.Scenario(language='brisk').agreement
   told = ' '.join(joint_description.of(brisk, asked).frames)
   assert f'up to {asked.reading.max_angle_deg:g} degrees' in told
-  assert 'of the hover point' not in told
+  assert 'from the hover point' not in told
