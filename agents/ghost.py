@@ -77,6 +77,7 @@ class Separation:
     self._detector = detector
     self._background = background
     self._config = config
+    self._tells = config.most_wider > 0  # A target from others, by its looks.
     self.greys: list[tuple[float, np.ndarray | None]] = []
 
   def add(self, grey: np.ndarray | None, time_s: float) -> None:
@@ -104,20 +105,36 @@ class Separation:
     blobs = blobs_lib.Blobs(weigh(grey, self._background, sigmas, wide=True))
     totals = np.where(blobs.inside(self._near), blobs.totals, 0.0)
     changes = blobs.sums(weigh(grey, before, sigmas, spread=2.0, wide=True))
-    large = totals > _MIN_SHARE * totals.max()
-    still = large & (changes < _MAX_CHANGE * totals)
-    home = np.flatnonzero(still & blobs.inside(self._home))
+    still = changes < _MAX_CHANGE * totals
+    home = still & blobs.inside(self._home)
+    most = totals[home].max(initial=0.0) if self._tells else totals.max()
+    large = totals > _MIN_SHARE * most
+    home, away = (np.flatnonzero(large & each) for each in (home, ~still))
     if not len(home):
       return None
     middle_px = np.array([grey.shape[1], grey.shape[0]]) / 2
-    away = np.flatnonzero(large & ~still)
-    if self._config.most_wider and len(away):
-      boxes = blobs.boxes[away]
-      size_px = boxes[:, 2:].max(axis=0) - boxes[:, :2].min(axis=0)
-      home = blobs.parts(home, middle_px, _LARGER * size_px)
-    else:
+    if not self._tells:
       home = blobs.about(home, middle_px)
-    rest, motion = totals[home].sum(), totals[away].sum()
+      return self._left(blobs, home, away, middle_px)
+    while len(away):  # The nearest that is like what is missing.
+      thing = blobs.about(away, middle_px)
+      boxes = blobs.boxes[thing]
+      size_px = boxes[:, 2:].max(axis=0) - boxes[:, :2].min(axis=0)
+      parts = blobs.parts(home, middle_px, _LARGER * size_px)
+      if found := self._left(blobs, parts, thing, middle_px):
+        return found
+      away = np.setdiff1d(away, thing)
+    return None
+
+  def _left(
+    self,
+    blobs: blobs_lib.Blobs,
+    home: np.ndarray,
+    away: np.ndarray,
+    middle_px: np.ndarray,
+  ) -> Ghost | None:
+    """What some blobs are the ghost of, if others are what has left it."""
+    rest, motion = blobs.totals[home].sum(), blobs.totals[away].sum()
     if min(rest, motion) <= _MIN_BALANCE * max(rest, motion):
       return None
     found = self._ghost(blobs.only(home))

@@ -42,7 +42,7 @@ class Language:
     coding: What makes a message known from a damaged one.
     initial_hover_s: Stillness before the first frame, 0 to 60 s.
     confirm_s: Stillness after END that belongs to a frame, 0.1 to 10 s.
-    pause_s: Stillness after that before the next frame, 0.3 to 60 s; 1.1 s is
+    pause_s: Stillness after that before the next frame, 0.3 to 60 s; 1.3 s is
       what whoever lost the dancer needs to learn anew how it looks at rest.
   """
 
@@ -50,7 +50,7 @@ class Language:
   coding: coding_lib.Coding = coding_lib.Coding()
   initial_hover_s: float = 1.65
   confirm_s: float = 0.2
-  pause_s: float = 1.1
+  pause_s: float = 1.3
 
   def __post_init__(self) -> None:
     kinds = levels_lib.Levels | alphabets.Gestures
