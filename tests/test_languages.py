@@ -387,7 +387,7 @@ def test_a_grid_takes_names_of_languages_alone(tmp_path: pathlib.Path) -> None:
     ),
     (
       '',
-      r"`language` must be one of \['paper', 'brisk', 'gentle', 'swift'\]:"
+      r"`language` must be one of \['paper', 'brisk', 'gentle', 'rapid', 'swift'\]:"
       r" got ''",
     ),
     ('swfit', "got 'swfit'. Did you mean swift"),
@@ -408,6 +408,7 @@ def test_the_command_shows_every_language_as_the_documents_have_it(
     'paper',
     'brisk',
     'gentle',
+    'rapid',
     'swift',
   ]
   names = re.split(r'\s{2,}', head)
@@ -430,7 +431,7 @@ def test_the_command_shows_every_language_as_the_documents_have_it(
     assert float(row['m/s']) == pytest.approx(max(speeds), abs=0.006)
     apart_m = sights.nearest(language.alphabet).distance_m
     assert float(row['apart mm']) == pytest.approx(1000 * apart_m, abs=0.06)
-  assert [row['rotors'] for row in rows] == ['yes', 'no', 'yes', 'yes']
+  assert [row['rotors'] for row in rows] == ['yes', 'no', 'yes', 'yes', 'yes']
   assert 'brisk, rotors: `gesture 0` must accelerate sideways' in child.stdout
   documents = DOCS.read_text(encoding='utf-8')
   assert all(line in documents for line in (head, *lines))

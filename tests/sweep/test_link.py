@@ -344,8 +344,8 @@ def test_the_table_has_a_line_for_each_scheme_and_condition(
   assert [cells(line)[:5] for line in lines[:4]] == [
     ['swift', 'calm', '6.5', '4/4', '39-100'],
     ['swift', 'noise', '6.5', '2/4', '6-94'],
-    ['swift x3', 'calm', '17.5', '4/4', '39-100'],
-    ['swift x3', 'noise', '17.5', '2/4', '6-94'],
+    ['swift x3', 'calm', '18.9', '4/4', '39-100'],
+    ['swift x3', 'noise', '18.9', '2/4', '6-94'],
   ]
   noisy = cells(lines[1])
   assert noisy[5:9] == ['0', '52.7%', '0', '2']
