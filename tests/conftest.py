@@ -42,9 +42,12 @@ def pytest_configure() -> None:
   """Takes Ctrl-C even where tests were begun in the background.
 
   Shells start such commands with the signal ignored, and so are the processes
-  that they start in turn.
+  that they start in turn. nohup does so with hang-ups: those are ignored here
+  still, but by a handler, which no process inherits.
   """
   signal.signal(signal.SIGINT, signal.default_int_handler)
+  if signal.getsignal(signal.SIGHUP) is signal.SIG_IGN:
+    signal.signal(signal.SIGHUP, lambda *_: None)
 
 
 @pytest.fixture(scope='session')

@@ -41,7 +41,8 @@ def test_a_name_changes_the_code_and_nothing_else(
   [
     (
       'swft',
-      "must be one of .*'paper', 'brisk', 'gentle', 'rapid', 'swift'.* mean swift",
+      "must be one of .*'paper', 'brisk', 'gentle', 'rapid', 'swift'.*"
+      ' mean swift',
     ),
     ('swift:', 'must be NAME or NAME:check'),
     ('swift:parity', 'must be NAME or NAME:check'),

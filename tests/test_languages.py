@@ -387,8 +387,8 @@ def test_a_grid_takes_names_of_languages_alone(tmp_path: pathlib.Path) -> None:
     ),
     (
       '',
-      r"`language` must be one of \['paper', 'brisk', 'gentle', 'rapid', 'swift'\]:"
-      r" got ''",
+      r"`language` must be one of \['paper', 'brisk', 'gentle', 'rapid',"
+      r" 'swift'\]: got ''",
     ),
     ('swfit', "got 'swfit'. Did you mean swift"),
   ],
