@@ -127,7 +127,7 @@ def _roll(
 
     def watch(step: episode.Step) -> None:
       if not step.timestep.first():
-        bar.update(frame)
+        job_progress.advance(bar, frame)
 
     return rollout_lib.run(scene, receiver_name, [*onlookers, watch])
 

@@ -19,10 +19,23 @@ def test_a_bar_of_any_length_ends_full_and_without_a_warning(
     warnings.simplefilter('error')
     with job_progress.seconds_bar(frames / 25, bar_format=form) as bar:
       for _ in range(frames):
-        bar.update(job_progress.ticks(1 / 25))
+        job_progress.advance(bar, job_progress.ticks(1 / 25))
   last = capsys.readouterr().err.splitlines()[-1]
   assert last.startswith('100 ')
   assert f'{frames / 25:.2f} of {frames / 25:.2f} s' in last
+
+
+@pytest.mark.parametrize('duration_s', [2.365, 2.38, 2.4])
+def test_the_last_image_may_come_after_the_end(
+  duration_s: float, capsys: pytest.CaptureFixture[str]
+) -> None:
+  form = '{percentage:.0f} {n:.2f} of {total:.2f} s'
+  with warnings.catch_warnings():
+    warnings.simplefilter('error')
+    with job_progress.seconds_bar(duration_s, bar_format=form) as bar:
+      for _ in range(60):
+        job_progress.advance(bar, job_progress.ticks(1 / 25))
+  assert capsys.readouterr().err.splitlines()[-1].startswith('100 ')
 
 
 def test_a_job_that_tells_more_than_its_time_does_not_overrun(

@@ -50,6 +50,14 @@ def seconds_bar(duration_s: float, **look: object) -> tqdm.tqdm:
   )
 
 
+def advance(bar: tqdm.tqdm, count: int) -> None:
+  """Moves a bar on, but never beyond its end, where tqdm forgets its total.
+
+  The last image of an episode may come after the time at which it ends.
+  """
+  bar.update(min(count, bar.total - bar.n))
+
+
 def shown(
   news: Iterable[pool.Advance | pool.Done],
   lengths_s: Mapping[str, float],
@@ -83,4 +91,4 @@ def shown(
         active.pop(name, None)
         done += 1
       bar.set_description_str(f'{describe(done, [*active])} ', refresh=False)
-      bar.update(flown[name] - before)
+      advance(bar, flown[name] - before)
