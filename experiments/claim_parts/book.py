@@ -100,6 +100,11 @@ CLAIMS = {
     'crossings', kinds.UNCHECKED, detail='a thousand crossings take 13 minutes'
   ),
   'languages': kinds.Claim('languages', kinds.TEXT, ('languages',)),
+  'link-hidden': _sweep(
+    'link-hidden', 1, '--replays=10', '--language=swift', receiver='joint',
+    observers=1, how=kinds.PART, control='seven_bits,begun_anew,run_together',
+    distance_m='1.3',
+  ),
   'gentle': _sweep(
     'gentle', 1, '--language=gentle', '--dynamics=rotors', receiver='joint',
     observers=1, distance_m='3.0', bearing_deg='75',
