@@ -171,6 +171,13 @@ CLAIMS = {
       '--broadcasts=4',
     ),
   ),
+  'link-bears': kinds.Claim(
+    'link-bears', kinds.ROWS,
+    (
+      'link', '--schemes=swift x3', '--conditions=mocap,bystanders',
+      '--broadcasts=6',
+    ),
+  ),
   'link-paper': kinds.Claim(
     'link-paper', kinds.ROWS,
     (
