@@ -178,6 +178,10 @@ CLAIMS = {
       '--broadcasts=6',
     ),
   ),
+  'link-hover': kinds.Claim(
+    'link-hover', kinds.ROWS,
+    ('link', '--schemes=swift', '--conditions=rotors', '--broadcasts=20'),
+  ),
   'link-paper': kinds.Claim(
     'link-paper', kinds.ROWS,
     (
