@@ -13,7 +13,6 @@ Exit status 0 when nobody touched and all arrived, 1 otherwise.
 from collections.abc import Sequence
 import concurrent.futures
 import itertools
-import math
 import multiprocessing
 import sys
 from typing import TYPE_CHECKING
@@ -22,6 +21,7 @@ from absl import flags
 
 from waggle_tasks import errors
 from waggle_tasks.experiments import launch
+from waggle_tasks.experiments.episodes import crossing_rows
 from waggle_tasks.experiments.flags import engine_flag
 from waggle_tasks.experiments.machine import table
 from waggle_tasks.protocol import checks
@@ -39,10 +39,6 @@ _SEED = flags.DEFINE_integer('seed', 0, 'Seed of the first crossing of each.')
 engine_flag.define_workers()
 
 _CHUNK = 10  # Crossings that a process flies before it is asked again.
-_HEADER = (
-  'vehicles', 'crossings', 'contacts', 'deadlocks', 'arrived', 'least m',
-  'longer', 'last s',
-)  # fmt: skip
 
 
 def main(argv: Sequence[str]) -> int:
@@ -60,7 +56,8 @@ def main(argv: Sequence[str]) -> int:
     for k in range(len(numbers))
   ]
   flown = _fly(numbers, shares, seed)
-  print(table.render(_HEADER, [_row(each) for each in flown]))
+  rows = [crossing_rows.row(each) for each in flown]
+  print(table.render(crossing_rows.HEADER, rows))
   every = itertools.chain.from_iterable(flown)
   good = all(c.arrived == c.vehicles and not c.contacts for c in every)
   return 0 if good else 1
@@ -103,25 +100,6 @@ def _fly(
       for number, share in zip(numbers, shares, strict=True)
     ]  # fmt: skip
     return [[c for job in each for c in job.result()] for each in jobs]
-
-
-def _row(several: Sequence['crossing.Crossing']) -> list[str]:
-  """A line of the table: all crossings of one number of vehicles."""
-  vehicles = several[0].vehicles
-  caught = sum(each.arrived < vehicles for each in several)
-  slower = [each.slower for each in several if not math.isnan(each.slower)]
-  last = [each.last_s for each in several if not math.isnan(each.last_s)]
-  longer = sum(slower) / len(slower) - 1 if slower else math.nan
-  return [
-    str(vehicles),
-    str(len(several)),
-    str(sum(each.contacts for each in several)),
-    str(caught),
-    f'{sum(each.arrived for each in several)}/{vehicles * len(several)}',
-    f'{min(each.least_m for each in several):.3f}',
-    f'{longer:.1%}',
-    f'{max(last):.1f}' if last else '-',
-  ]
 
 
 if __name__ == '__main__':

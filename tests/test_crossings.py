@@ -7,8 +7,7 @@ import pathlib
 import numpy as np
 import pytest
 
-from waggle_tasks.experiments import crossings
-from waggle_tasks.experiments.episodes import crossing
+from waggle_tasks.experiments.episodes import crossing, crossing_rows
 from waggle_tasks.experiments.machine import table
 from waggle_tasks.tasks import safety
 
@@ -59,15 +58,17 @@ def test_a_table_has_a_line_for_each_number_of_vehicles(
   line = ['crossings', '--vehicles=2,4', '--count=4', '--workers=1']
   ((status, said, files),) = ask([line], tmp_path)
   rows = [
-    crossings._row(each) for each in (crossing.several(2, range(2)), flown)
+    crossing_rows.row(each) for each in (crossing.several(2, range(2)), flown)
   ]
-  assert said.strip() == table.render(crossings._HEADER, rows).strip()
+  assert said.strip() == table.render(crossing_rows.HEADER, rows).strip()
   assert (status, files) == (0, [])
 
 
 def test_who_is_caught_is_told() -> None:
   caught = crossing.Crossing(3, 2, 0, 0.2, 1.5, math.nan)
-  row = dict(zip(crossings._HEADER, crossings._row([caught]), strict=True))
+  row = dict(
+    zip(crossing_rows.HEADER, crossing_rows.row([caught]), strict=True)
+  )
   assert (row['deadlocks'], row['arrived'], row['last s']) == ('1', '2/3', '-')
 
 

@@ -3,8 +3,8 @@
 from collections.abc import Callable
 import pathlib
 import subprocess
-import types
 
+import chromium
 import numpy as np
 import pytest
 
@@ -79,18 +79,17 @@ def test_a_page_draws_heights_over_the_levels(page: str) -> None:
 
 @pytest.mark.parametrize('width', [1280, 820])
 def test_no_words_overlap(
-  chromium: types.ModuleType,
+  browser: chromium.Browser,
   run: tuple[pathlib.Path, object],
   width: int,
 ) -> None:
-  with chromium.Browser() as browser:
-    browser.open(run[0] / document.NAME)
-    browser.resize(width, 800)
-    assert browser.eval(chromium.OVERLAPS) == []
-    assert browser.eval(chromium.CLIPPED) == []
-    browser.eval('show(4.3)')
-    now = browser.eval("document.getElementById('now').textContent")
-    assert 'sent level 2' in now
+  browser.open(run[0] / document.NAME)
+  browser.resize(width, 800)
+  assert browser.eval(chromium.OVERLAPS) == []
+  assert browser.eval(chromium.CLIPPED) == []
+  browser.eval('show(4.3)')
+  now = browser.eval("document.getElementById('now').textContent")
+  assert 'sent level 2' in now
 
 
 def test_a_strip_shows_what_was_read_below_what_was_sent(
