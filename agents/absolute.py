@@ -136,10 +136,9 @@ class Follower:
     support = cv2.countNonZero(weights)
     if support > _COVERED * weights.size:
       return self.lose(time_s, outside=outside)
-    extent_px = difference.extent_px(weights)
     if not (
       config.lost_share <= share <= config.most_share
-      and difference.alike(extent_px, self._ghost.extent_px, config)
+      and difference.alike(weights, self._ghost.extent_px, config)
     ):
       found = None if outside else self._search(image)
       if found is None:

@@ -208,17 +208,19 @@ def extent_px(weights: np.ndarray) -> np.ndarray:
 
 
 def alike(
-  extent_px: np.ndarray, known_px: np.ndarray, config: config_lib.Differencing
+  weights: np.ndarray, known_px: np.ndarray, config: config_lib.Differencing
 ) -> bool:
-  """Whether what is spread so may be what was spread like that.
+  """Whether weights (h, w) may be those of what was spread in a known way.
 
   Args:
-    extent_px: (2,) its width and height...
-    known_px: ...and those known, see `extent_px`.
-    config: How many times more, or less, each may be.
+    weights: The weights.
+    known_px: (2,) see `extent_px`.
+    config: How many times more, or less, each may be; 0 asks for nothing.
   """
   most = np.array([config.most_wider, config.most_higher])
-  more = np.maximum(extent_px, 1e-9) / np.maximum(known_px, 1e-9)
+  if not most.any():
+    return True
+  more = np.maximum(extent_px(weights), 1e-9) / np.maximum(known_px, 1e-9)
   return bool(((most == 0) | ((more <= most) & (more * most >= 1))).all())
 
 

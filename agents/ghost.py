@@ -138,8 +138,8 @@ class Separation:
     if min(rest, motion) <= _MIN_BALANCE * max(rest, motion):
       return None
     found = self._ghost(blobs.only(home))
-    extent_px = difference.extent_px(blobs.only(away))
-    if not difference.alike(extent_px, found.extent_px, self._config):
+    moving = blobs.only(away)
+    if not difference.alike(moving, found.extent_px, self._config):
       return None
     # Others hover beside a target: above or below is the wash of its rotors.
     aside_px = abs(found.anchor_px[0] - middle_px[0])
