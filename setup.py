@@ -12,7 +12,8 @@ VIDEO = ('av>=17.1',)
 CLUSTER = ('distributed>=2025.1',)
 ANALYSIS = ('matplotlib>=3.9',)
 TEST = (
-  'pytest>=8', 'pytest-xdist>=3.1', 'hypothesis>=6.16', 'setuptools>=77',
+  'pytest>=8', 'pytest-timeout>=2.2', 'pytest-xdist>=3.1', 'hypothesis>=6.16',
+  'setuptools>=77',
   *CLUSTER, *ANALYSIS, *VIDEO,
 )  # fmt: skip
 DEV = (*TEST, 'ruff>=0.14', 'mypy>=2.4', 'build>=1')

@@ -3,7 +3,8 @@
 A new Python takes a second of a core to import what every command needs. One
 that has them stands by and is forked for each command: the fork has flags,
 streams, a folder and an end of its own, as a new process has. Before the fork
-nothing of GL is there, which would not survive it.
+there is nothing of GL, and one thread alone: what others hold then is held for
+ever after it.
 """
 
 from collections.abc import Sequence
@@ -14,7 +15,6 @@ import pathlib
 import subprocess
 import sys
 import tempfile
-import warnings
 
 _MAIN = 'waggle_tasks.experiments.main'
 
@@ -27,6 +27,7 @@ class Starter:
     self._parent = subprocess.Popen(
       [sys.executable, __file__],
       stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True,
+      env=self._environment | {'OPENBLAS_NUM_THREADS': '1'},
     )  # fmt: skip
 
   def run(
@@ -62,9 +63,7 @@ def _environment() -> dict[str, str]:
 def _stand_by() -> None:
   """Forks for each line of the input; returns in the fork."""
   for line in iter(sys.stdin.readline, ''):
-    with warnings.catch_warnings():
-      warnings.simplefilter('ignore')  # Threads of numpy bear it.
-      pid = os.fork()
+    pid = os.fork()
     if not pid:
       _become(*json.loads(line))
       return

@@ -1,12 +1,12 @@
 """Drives Chromium over its debugging pipe; needs nothing but the browser."""
 
 import contextlib
-import fcntl
 import json
 import os
 import pathlib
 import shutil
 import subprocess
+import sys
 import tempfile
 import time
 import types
@@ -19,6 +19,16 @@ _FLAGS = (
   '--autoplay-policy=no-user-gesture-required', '--hide-scrollbars',
 )  # fmt: skip
 _TIMEOUT_S = 30.0
+# Becomes the browser, with its pipe where it expects it. A function between
+# fork and exec could wait for ever for a thread that the fork does not have.
+_START = """
+import fcntl, os, sys
+reads, writes, *command = sys.argv[1:]
+far = [fcntl.fcntl(int(end), fcntl.F_DUPFD, 64) for end in (reads, writes)]
+for place, end in zip((3, 4), far):
+  os.dup2(end, place)
+os.execv(command[0], command)
+"""
 # Pairs of words in one drawing whose letters overlap by more than a pixel.
 OVERLAPS = """
 (() => {
@@ -65,23 +75,18 @@ class Browser:
     self._home = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)
     reads, self._out = os.pipe()
     self._in, writes = os.pipe()
-    # Far from 3 and 4, where the browser expects them.
-    ends = [fcntl.fcntl(fd, fcntl.F_DUPFD, 64) for fd in (reads, writes)]
-
-    def place() -> None:
-      for wanted, end in zip((3, 4), ends, strict=True):
-        os.dup2(end, wanted)
-
+    ends = reads, writes
     self._process = subprocess.Popen(
       [
-        find(), *_FLAGS, f'--user-data-dir={self._home.name}',
+        sys.executable, '-c', _START, *map(str, ends), find(), *_FLAGS,
+        f'--user-data-dir={self._home.name}',
         f'--window-size={width},{height}', 'about:blank',
       ],
       stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
-      stderr=subprocess.DEVNULL, pass_fds=(3, 4), preexec_fn=place,
+      stderr=subprocess.DEVNULL, pass_fds=ends,
     )  # fmt: skip
-    for fd in (reads, writes, *ends):
-      os.close(fd)
+    for end in ends:
+      os.close(end)
     os.set_blocking(self._in, False)
     self._buffer, self._number, self.requests = b'', 0, []
     targets = self._call('Target.getTargets')['targetInfos']

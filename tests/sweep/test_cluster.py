@@ -253,11 +253,13 @@ def listens(
   thread = threading.Thread(target=serve)
   thread.start()
   named = f'[{host}]' if ':' in host else host
-  yield f'tcp://{named}:{server.getsockname()[1]}'
-  server.shutdown(socket.SHUT_RDWR)
-  thread.join()
-  for each in (server, *links):
-    each.close()
+  try:
+    yield f'tcp://{named}:{server.getsockname()[1]}'
+  finally:
+    server.shutdown(socket.SHUT_RDWR)
+    thread.join()
+    for each in (server, *links):
+      each.close()
 
 
 @needs_dask
