@@ -196,7 +196,7 @@ class Views(group.Group):
 
 
 @dataclasses.dataclass(frozen=True)
-class Recognition(group.Group):
+class RecognitionLimits(group.Group):
   """When a path is a symbol (paper, section 'RGB optical flow').
 
   Attributes:
@@ -279,7 +279,7 @@ class Config:
   tracking: Tracking | Differencing = Tracking()
   motion: Motion | Excursion = Motion()
   wandering: wandering_lib.Wandering = wandering_lib.Wandering()
-  recognition: Recognition = Recognition()
+  recognition: RecognitionLimits = RecognitionLimits()
   stillness: Stillness = Stillness()
   framing: frame.Rules = frame.Rules()
   views: Views | None = None

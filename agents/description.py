@@ -67,7 +67,7 @@ class Description:
   speed: Measure = Measure('speed', 'px/s, log')
   support: Measure = Measure('support', '')
   quality: Measure = Measure('quality', '0 to 1')
-  recognition: config_lib.Recognition | None = None
+  recognition: config_lib.RecognitionLimits | None = None
   templates: Callable[[], views.Templates] | None = None
   frames: tuple[str, ...] = ()
 

@@ -83,7 +83,7 @@ class Detector:
   def __init__(
     self,
     config: config_lib.Differencing,
-    noise: noise_lib.Noise,
+    noise: noise_lib.CameraNoise,
     excess: float = 1.0,
     levels: int = 0,
   ) -> None:

@@ -52,15 +52,17 @@ class Scene:
     self._sum = grey.astype(np.float32)
     self._count = 1
     self._last, self._kept, self._kept_s = grey, [grey], time_s
-    self._noise: noise_lib.Noise | None = None
+    self._noise: noise_lib.CameraNoise | None = None
     self.speckled = False
     self.first = difference.Background(grey)
-    self.detector = difference.Detector(config, noise_lib.Noise(grey, grey))
+    self.detector = difference.Detector(
+      config, noise_lib.CameraNoise(grey, grey)
+    )
 
   def look(self, grey: np.ndarray) -> None:
     """Tells noise by two pictures of which neither is a copy."""
     if self._noise is None and not np.array_equal(grey, self._last):
-      self._noise = noise_lib.Noise(self._last, grey)
+      self._noise = noise_lib.CameraNoise(self._last, grey)
       level = self._noise.overall
       self.speckled = noise_lib.speckled(self._last, grey, level)
       self.detector = difference.Detector(self._config, self._noise)

@@ -23,7 +23,7 @@ class Command:
 
   Attributes:
     payload: What was read.
-    provenance: `provenance.Chain.digest` of the images; never empty.
+    provenance: `image_chain.Chain.digest` of the images; never empty.
   """
 
   payload: payload.Payload

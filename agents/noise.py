@@ -13,7 +13,7 @@ _SPECKLE, _SPECKLE_SIGMAS, _ALONE = 20.0, 8.0, 4
 _SPECKLED = 1e-4  # Share of bad pixels of a camera that has some.
 
 
-class Noise:
+class CameraNoise:
   """Noise of images of one scene.
 
   Its variance is a straight line over brightness: flat for a camera's own

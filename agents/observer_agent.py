@@ -8,8 +8,8 @@ import math
 import numpy as np
 
 from waggle_tasks import errors
+from waggle_tasks.agents import image_chain, receiver, receivers
 from waggle_tasks.agents import navigator as navigator_lib
-from waggle_tasks.agents import provenance, receiver, receivers
 from waggle_tasks.protocol import agreement as agreement_lib
 from waggle_tasks.protocol import payload
 
@@ -67,7 +67,7 @@ class ObserverAgent:
     """
     self.receiver = reader
     self._navigator = navigator
-    self._chain = provenance.Chain()
+    self._chain = image_chain.Chain()
     self._command: navigator_lib.Command | None = None
     self.events: list[receiver.Event | Navigation] = []
     self.read_s = math.nan

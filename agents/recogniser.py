@@ -45,7 +45,7 @@ class Recogniser:
   """Compares paths with templates of a codebook."""
 
   def __init__(
-    self, config: config_lib.Recognition, templates: views.Templates
+    self, config: config_lib.RecognitionLimits, templates: views.Templates
   ) -> None:
     """Makes a recogniser.
 

@@ -25,7 +25,7 @@ def _quantiles() -> np.ndarray:
   return np.array([*map(normal.inv_cdf, shares)])
 
 
-class Noise:
+class SensorNoise:
   """Gaussian noise, and shot noise as Gaussian noise that grows with light.
 
   The variance of a value of level L is sigma^2 + 255 L / photons: that of a

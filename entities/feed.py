@@ -55,7 +55,7 @@ class Feed:
     self._blur = corruptors.Blur(chosen.exposure_s / agreement.frame_s)
     self._noise = None
     if chosen.noise_sigma or chosen.photons:
-      self._noise = corruptors.Noise(
+      self._noise = corruptors.SensorNoise(
         chosen.noise_sigma, chosen.photons, agreement.camera.shape, noise
       )
     self._frame = self._exposed_frame = -1

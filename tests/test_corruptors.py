@@ -12,7 +12,7 @@ SHAPE = (480, 640, 3)
 
 def noise(count: int = 4, level: int = 128, **size: float) -> np.ndarray:
   """What is added to images of one level: (count, 480, 640, 3)."""
-  add = corruptors.Noise(
+  add = corruptors.SensorNoise(
     size.get('sigma', 0.0), size.get('photons', 0.0), SHAPE,
     np.random.RandomState(4),
   )  # fmt: skip

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from waggle_tasks import errors
-from waggle_tasks.agents import navigator, observer_agent, provenance, receiver
+from waggle_tasks.agents import image_chain, navigator, observer_agent, receiver
 from waggle_tasks.protocol import frame, payload
 from waggle_tasks.protocol.symbols import Symbol
 
@@ -127,7 +127,7 @@ def test_it_arrives_once_when_every_other_image_is_missing() -> None:
 
 
 def digest(images: Sequence[np.ndarray], times_s: Sequence[float]) -> str:
-  chain = provenance.Chain()
+  chain = image_chain.Chain()
   for image, time_s in zip(images, times_s, strict=True):
     chain.add(image, time_s)
   assert chain.images == len(images)

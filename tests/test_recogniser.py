@@ -11,14 +11,14 @@ from waggle_tasks.protocol import gestures
 from waggle_tasks.protocol.symbols import MOTIONS, Symbol
 
 BOOK = gestures.v_codebook()
-LIMITS = config.Recognition()
+LIMITS = config.RecognitionLimits()
 
 
 def recognise(
   path_px: np.ndarray,
   codebook: gestures.Codebook = BOOK,
   loss: str | None = None,
-  limits: config.Recognition = LIMITS,
+  limits: config.RecognitionLimits = LIMITS,
 ) -> recogniser.Recognition:
   """Names a path, (T, 2) pixels with x right and y down."""
   segment = segmenter.Segment(0.0, 1.0, np.array(path_px), loss)
@@ -39,7 +39,7 @@ def path_px(symbol: Symbol, span_px: float = 100.0) -> np.ndarray:
 
 
 def test_the_limits_are_the_papers() -> None:
-  assert config.Recognition(0.17, 0.075, 0.18, 28.0) == LIMITS
+  assert config.RecognitionLimits(0.17, 0.075, 0.18, 28.0) == LIMITS
 
 
 @pytest.mark.parametrize('symbol', MOTIONS)

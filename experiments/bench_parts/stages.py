@@ -16,7 +16,7 @@ from dm_control import mjcf
 from dm_control.composer.observation import updater
 
 from waggle_tasks import scenario
-from waggle_tasks.agents import navigator, provenance, receivers
+from waggle_tasks.agents import image_chain, navigator, receivers
 from waggle_tasks.entities import renderer
 from waggle_tasks.experiments.bench_parts import loops, processes
 from waggle_tasks.experiments.record import episode
@@ -52,7 +52,7 @@ STAGES = (
   Call(updater.Updater, 'prepare_for_next_control_step', 'observation copies'),
   Call(updater.Updater, 'update', 'observation copies'),
   Call(updater.Updater, 'get_observation', 'observation copies'),
-  Call(provenance.Chain, 'add', 'provenance hash'),
+  Call(image_chain.Chain, 'add', 'provenance hash'),
   Call(_RECEIVER, 'step', _READING),
   Call(cv2, 'cvtColor', 'receiver: grey', _READING),
   Call(cv2, 'calcOpticalFlowPyrLK', 'receiver: optical flow', _READING),

@@ -141,7 +141,7 @@ def _axes(x: plot.Scale, y: plot.Scale) -> markup.Markup:
 def _scores(
   event: receiver.Event,
   motion: traces_lib.TracedMotion | None,
-  limits: config_lib.Recognition | None,
+  limits: config_lib.RecognitionLimits | None,
 ) -> markup.Markup | None:
   """Every score with its limit and whether it keeps it, where that is told."""
   scores = event.recognition

@@ -6,7 +6,7 @@ import pathlib
 
 import numpy as np
 
-from waggle_tasks.agents import provenance, receiver, receivers
+from waggle_tasks.agents import image_chain, receiver, receivers
 from waggle_tasks.experiments.machine import table
 from waggle_tasks.experiments.record import archive, capture, frames, writer
 from waggle_tasks.protocol import agreement as agreement_lib
@@ -42,7 +42,7 @@ class Reader:
     self.name, self.agreement = name, agreement
     self.receiver = receivers.make(name, agreement)
     self.events: list[receiver.Event] = []
-    self.chain = provenance.Chain()
+    self.chain = image_chain.Chain()
     self.last_s = np.nan
     self.longest_gap_s = 0.0
 

@@ -164,7 +164,7 @@ def test_thresholds_follow_the_focal_length(
   symbols, work = decoded(path, zoom=0.5)
   assert symbols == WANTED
   spans_px = [e.recognition.span_px for e in work.events if e.recognition]
-  assert min(spans_px) > 0.5 * config.Recognition().min_span_px
+  assert min(spans_px) > 0.5 * config.RecognitionLimits().min_span_px
   assert decoded(path, zoom=2.0)[0] != WANTED
 
 

@@ -14,13 +14,13 @@ from waggle_tasks.tasks import (
   actions,
   contacts,
   copies,
+  episode_clock,
   fleet,
   flights,
   safety,
   steps,
   switches,
 )
-from waggle_tasks.tasks import clock as clock_lib
 from waggle_tasks.tasks import parts as parts_lib
 
 OBSERVATIONS = ('camera', 'time_s', 'position_m')
@@ -109,7 +109,7 @@ class Broadcast(copies.Uncopied, steps.Framed):
     """Places the vehicles and begins the dance.
 
     Raises:
-      ClockError: if the time step is not that which was compiled.
+      StepError: if the time step is not that which was compiled.
       ObservableError: if something is to be observed that nobody can see.
     """
     switches.check(self, self.observers, physics)
@@ -120,7 +120,7 @@ class Broadcast(copies.Uncopied, steps.Framed):
       sways[name] = draw(random_state, home.yaw_rad, self.agreement.rate_hz)
     self._fleet.let_drift(sways)
     self._fleet.begin(physics, self._parts, random_state)
-    self._clock = clock_lib.Clock(physics, self.agreement)
+    self._clock = episode_clock.EpisodeClock(physics, self.agreement)
     self._tell()
     for each in self._dancers.values():
       each.vehicle.perform(each.performance.schedule)
@@ -154,7 +154,7 @@ class Broadcast(copies.Uncopied, steps.Framed):
 
     Raises:
       ActionError: if the action is not one finite reference per observer.
-      ClockError: if the physics was set to a state that cannot be flown on.
+      StepError: if the physics was set to a state that cannot be flown on.
     """
     del random_state
     self._touched = set[tuple[str, str]]()
@@ -176,12 +176,12 @@ class Broadcast(copies.Uncopied, steps.Framed):
   def _replay(self, physics: mjcf.Physics) -> None:
     """Goes on from a time that the physics was set to."""
     if self._flights.begun:
-      raise clock_lib.ClockError(
+      raise episode_clock.StepError(
         '`time` must not be set once an observer was given its command:'
         ' `reset` and play the actions again'
       )
     if any(each.is_spoilt for each in self.observers):
-      raise clock_lib.ClockError(
+      raise episode_clock.StepError(
         '`time` must not be set where a sensor spoils images, as it draws on'
         ' and on: `load` again with the same seed and play the actions again'
       )

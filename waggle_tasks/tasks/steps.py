@@ -4,7 +4,7 @@ from dm_control import composer
 from dm_control.composer.observation import observable
 
 from waggle_tasks.protocol import agreement as agreement_lib
-from waggle_tasks.tasks import clock as clock_lib
+from waggle_tasks.tasks import episode_clock
 
 
 class Framed(composer.Task):
@@ -28,9 +28,9 @@ class Framed(composer.Task):
     """See `composer.Task`; a control step is a frame.
 
     Raises:
-      ClockError: if it is not, or if the physics step is too long.
+      StepError: if it is not, or if the physics step is too long.
     """
-    clock_lib.check_timesteps(
+    episode_clock.check_timesteps(
       control_timestep, physics_timestep, self.agreement
     )
     super().set_timesteps(control_timestep, physics_timestep)

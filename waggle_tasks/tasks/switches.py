@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from dm_control import composer, mjcf
 
 from waggle_tasks import errors
-from waggle_tasks.tasks import clock
+from waggle_tasks.tasks import episode_clock
 
 
 class ObservableError(errors.WaggleError):
@@ -25,11 +25,11 @@ def check(
     physics: What was compiled of it.
 
   Raises:
-    ClockError: if the time step is not that which was compiled.
+    StepError: if the time step is not that which was compiled.
     ObservableError: if something is observed of anybody else.
   """
   if physics.timestep() != task.physics_timestep:
-    raise clock.ClockError(
+    raise episode_clock.StepError(
       '`physics_timestep` must be set before the first reset, which compiles'
       f' it: {physics.timestep():g} s is compiled, {task.physics_timestep:g} s'
       ' was asked for; `load` another environment'

@@ -23,7 +23,7 @@ _REPLAY = (
 )
 
 
-class ClockError(errors.WaggleError):
+class StepError(errors.WaggleError):
   """A time, or a time step, in which the dance cannot be flown."""
 
 
@@ -33,22 +33,22 @@ def check_timesteps(
   """Refuses time steps at which the agreed language is not what is flown.
 
   Raises:
-    ClockError: naming the time step, the rule and the value.
+    StepError: naming the time step, the rule and the value.
   """
   if not abs(control_s - agreement.frame_s) <= 1e-9:
-    raise ClockError(
+    raise StepError(
       f'`control_timestep` must be {agreement.frame_s:g} s, as by `rate_hz` of'
       ' the scenario images, references and the dance come at'
       f' {agreement.rate_hz:g} Hz: got {control_s!r}'
     )
   if not 0 < physics_s <= MAX_PHYSICS_TIMESTEP_S:
-    raise ClockError(
+    raise StepError(
       '`physics_timestep` must be above 0 and at most'
       f' {MAX_PHYSICS_TIMESTEP_S:g} s: got {physics_s!r}'
     )
 
 
-class Clock:
+class EpisodeClock:
   """Counts frames, and notices when somebody else moves the physics.
 
   Attributes:
@@ -90,19 +90,19 @@ class Clock:
       Whether it was set to the time of another frame.
 
     Raises:
-      ClockError: if it is no frame's, or if the state was set without it.
+      StepError: if it is no frame's, or if the state was set without it.
     """
     time_s, frame_s = physics.time(), self._agreement.frame_s
     frame = self._agreement.frames(time_s)
     if abs(time_s - frame * frame_s) > _SAME:
-      raise ClockError(
+      raise StepError(
         f'`time` of the physics must be a whole number of frames of'
         f' {frame_s:g} s when the environment steps: got {time_s:g} s'
       )
     if frame != self.frame:
       return True
     if np.abs(_state(physics) - self._state).max() > _SAME:
-      raise ClockError(
+      raise StepError(
         'the state of the physics was set and its time was not, so that the'
         f' dance would go on from {time_s:g} s: {_REPLAY}'
       )
