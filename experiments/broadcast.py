@@ -19,6 +19,7 @@ from waggle_tasks.agents import receivers
 from waggle_tasks.experiments import launch
 from waggle_tasks.experiments.flags import (
   config_flag,
+  foresight,
   receiver_flag,
   recording_flags,
   scenario_flags,
@@ -30,9 +31,7 @@ from waggle_tasks.experiments.record import (
   episode,
   folders,
   frames,
-  nulls,
   provenance,
-  reach,
   source_files,
   told,
   verdicts,
@@ -55,9 +54,7 @@ _OUTPUT = flags.DEFINE_string(
 def main(argv: Sequence[str]) -> int:
   """Runs the scenario of the flags and returns the exit status."""
   scene, receiver_name = _chosen()
-  nulls.check([scene], receiver_name)
-  if note := reach.note([scene], receiver_name):
-    print(note, file=sys.stderr)
+  foresight.tell([scene], receiver_name)
   # Imported here: help needs no simulator.
   from waggle_tasks.experiments.episodes import evaluator, outside
 

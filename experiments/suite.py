@@ -23,15 +23,14 @@ from waggle_tasks import suites
 from waggle_tasks.experiments import launch
 from waggle_tasks.experiments.flags import (
   engine_flag,
+  foresight,
   receiver_flag,
   scenario_flags,
 )
 from waggle_tasks.experiments.pages import run_page, suite_page
 from waggle_tasks.experiments.record import (
   archive,
-  nulls,
   provenance,
-  reach,
   scenario_fields,
 )
 from waggle_tasks.experiments.results import suite_tables
@@ -69,9 +68,7 @@ def main(argv: Sequence[str]) -> int:
   cases = _cases()
   scenes = [case.scene for case in cases]
   reader = receiver_flag.chosen(_RECEIVER, scenes)
-  for look in (nulls.check, reach.note):
-    if note := look(scenes, reader):
-      print(note, file=sys.stderr)
+  foresight.tell(scenes, reader)
   # Imported here: to compare results, no simulator is needed.
   from waggle_tasks.experiments.studies import runner, suite_study
 

@@ -18,11 +18,12 @@ from absl import flags
 from waggle_tasks.experiments import launch
 from waggle_tasks.experiments.flags import (
   engine_flag,
+  foresight,
   receiver_flag,
   scenario_flags,
 )
 from waggle_tasks.experiments.pages import sweep_output
-from waggle_tasks.experiments.record import folders, nulls, provenance, reach
+from waggle_tasks.experiments.record import folders, provenance
 from waggle_tasks.experiments.results import envelope, figures, sweep_tables
 from waggle_tasks.experiments.studies import case_rows, sweep_cases
 from waggle_tasks.protocol import checks
@@ -64,9 +65,7 @@ def main(argv: Sequence[str]) -> int:
   )
   scenes = [case.scene for case in cases]
   reader = receiver_flag.chosen(_RECEIVER, scenes)
-  for look in (nulls.check, reach.note):
-    if note := look(scenes, reader):
-      print(note, file=sys.stderr)
+  foresight.tell(scenes, reader)
   # Imported here: to show results, no simulator is needed.
   from waggle_tasks.experiments.studies import runner, sweep_study
 

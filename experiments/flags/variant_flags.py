@@ -9,7 +9,7 @@ from absl import flags
 
 from waggle_tasks import suites
 from waggle_tasks.agents import receivers
-from waggle_tasks.experiments.flags import engine_flag, receiver_flag
+from waggle_tasks.experiments.flags import engine_flag, foresight, receiver_flag
 from waggle_tasks.experiments.pages import run_page
 from waggle_tasks.experiments.record import provenance
 from waggle_tasks.experiments.studies import variants
@@ -74,25 +74,29 @@ def run(
     checks.choice('variant', name, [*known], suites.SuiteError)
   asked = [f'--receiver={each}'] if (each := receiver()) is not None else []
   engine, _ = engine_flag.engine()
-  # Imported here: help needs no simulator.
-  from waggle_tasks.experiments.studies import runner, suite_study
-
-  results = {}
-  for name in names or known:
-    variant = known[name]
-    print(f'{name}: {variant.label}', flush=True)
-    moved = [
+  moved = {
+    name: [
       dataclasses.replace(
-        case, scene=dataclasses.replace(case.scene, **variant.changes)
+        case, scene=dataclasses.replace(case.scene, **known[name].changes)
       )
       for case in cases
       if not wanted or case.name in wanted
     ]
+    for name in names or known
+  }
+  for name, some in moved.items():
+    foresight.tell([case.scene for case in some], known[name].receiver)
+  # Imported here: help needs no simulator.
+  from waggle_tasks.experiments.studies import runner, suite_study
+
+  results = {}
+  for name, some in moved.items():
+    print(f'{name}: {known[name].label}', flush=True)
     line = provenance.command_line(
       command, [f'--suite={suite}', *asked, f'--variant={name}']
     )
     results[name] = runner.run(
-      suite_study.Suite(moved, variant.receiver, run_page.leave),
+      suite_study.Suite(some, known[name].receiver, run_page.leave),
       pathlib.Path(values['output']) / name, engine, line,
     )  # fmt: skip
   return results

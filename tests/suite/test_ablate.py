@@ -148,3 +148,14 @@ def test_bad_input_is_one_line(ablate: Waggle, flag: str, error: str) -> None:
   assert done.returncode == 2
   assert done.stderr.count('\n') == 1
   assert re.match(f'waggle ablate: {error}', done.stderr)
+
+
+def test_what_a_receiver_has_no_time_for_is_refused_before_it_flies(
+  waggle: Waggle, tmp_path: pathlib.Path
+) -> None:
+  flags = '--case=default', '--receiver=klt:hold_s=5', '--output=out'
+  done = waggle('ablate', *flags, cwd=tmp_path)
+  assert done.returncode == 2
+  assert done.stdout == ''
+  assert '4.00 s before START, of which a null' in done.stderr
+  assert not (tmp_path / 'out').exists()
