@@ -18,22 +18,35 @@ def commanded(
   run: archive.Run, name: str
 ) -> tuple[np.ndarray, np.ndarray] | None:
   """Where an observer took its command, and where that leads, (3,) each."""
+  event = _start(run, name)
+  if event is None:
+    return None
+  frame = int(np.abs(run.times_s - event.time_s).argmin())
+  begin_m = run.positions_m[name][frame]
+  target_m = np.array(event.target_m)
+  if run.scenario['safety'] == 'avoid':
+    target_m = safety.settled_m(
+      target_m,
+      run.positions_m[name][0],
+      [run.positions_m['performer'][0]],
+      _kept_m(run.scenario),
+    )
+  return begin_m, target_m
+
+
+def begun_s(run: archive.Run, name: str) -> float | None:
+  """When an observer took its command; None if it never did."""
+  event = _start(run, name)
+  return None if event is None else event.time_s
+
+
+def _start(run: archive.Run, name: str) -> observer_agent.Navigation | None:
   for event in run.events[name]:
     if (
       isinstance(event, observer_agent.Navigation)
       and event.deed is observer_agent.Deed.START
     ):
-      frame = int(np.abs(run.times_s - event.time_s).argmin())
-      begin_m = run.positions_m[name][frame]
-      target_m = np.array(event.target_m)
-      if run.scenario['safety'] == 'avoid':
-        target_m = safety.settled_m(
-          target_m,
-          run.positions_m[name][0],
-          [run.positions_m['performer'][0]],
-          _kept_m(run.scenario),
-        )
-      return begin_m, target_m
+      return event
   return None
 
 

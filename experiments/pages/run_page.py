@@ -15,6 +15,7 @@ from waggle_tasks.experiments.pages import (
   film_part,
   flights,
   heights,
+  hover_part,
   markup,
   observer_part,
   room,
@@ -96,6 +97,7 @@ def draw(run: archive.Run, films: Sequence[str]) -> markup.Markup:
     film_part.draw(run, films),
     _flights(run),
     rotor_part.draw(run),
+    hover_part.draw(run),
     *(observer_part.draw(run, outcome) for outcome in outcomes),
     _provenance(run),
   ]
