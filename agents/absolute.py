@@ -8,7 +8,7 @@ import numpy as np
 
 from waggle_tasks.agents import blobs as blobs_lib
 from waggle_tasks.agents import config as config_lib
-from waggle_tasks.agents import difference, hover, klt
+from waggle_tasks.agents import difference, hover, klt, parallax
 from waggle_tasks.agents import ghost as ghost_lib
 
 _REPAIRS = 25  # Images that the background behind the hover is made from.
@@ -107,6 +107,7 @@ class Follower:
     self._speed_s = config.speed_s * (1 + noisy + (departure.slack_px > 0))
     self._recent: deque[_Row] = deque()  # Time, x and y.
     self._seen_s = math.inf
+    self._parallax = parallax.Parallax(config)
 
   def lost_s(self, time_s: float) -> float:
     """For how long the target has not been seen."""
@@ -145,6 +146,8 @@ class Follower:
         return self.lose(time_s, min(share, 1.0), outside)
       share, centre_px = found
     self._repair(image, gate)
+    if self._alignment.sways:
+      self._renew(image, gate, time_s)
     self._centre_px, self._seen_s = centre_px, time_s
     _keep(self._recent, (time_s, *centre_px), self._speed_s)
     return klt.Track(
@@ -233,6 +236,15 @@ class Follower:
       self._behind += difference.grey(image, self._home)
       self._repairs += 1
       self._background.grey[self._home] = np.rint(self._behind / self._repairs)
+
+  def _renew(
+    self, image: np.ndarray, gate: tuple[slice, slice], time_s: float
+  ) -> None:
+    """Follows what is behind the target while its camera moves aside."""
+    grey, known = difference.grey(image), self._background
+    if self._parallax.step(grey, gate, time_s, known):
+      known.variance = self._detector.background(known.grey).variance
+      self._alignment.renew(known.grey)
 
 
 def _keep(rows: deque[_Row], row: _Row, duration_s: float) -> None:

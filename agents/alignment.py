@@ -32,20 +32,23 @@ class Scene:
     small: The same of a smaller picture; None where there is no use for one.
     settles: Whether a shift that may be none is none.
     banded: Whether rows, or parts, may be brighter by themselves.
+    least: Share of pixels that must fit where it sways: some fit by chance in
+      wrong places.
   """
 
   edges: levels.Edges
   small: levels.Edges | None
   settles: bool
   banded: bool
+  least: float
 
 
 # All but the target, which may move by itself.
 ROOM = Scene(
-  levels.Edges(16, 160, 24, 8), levels.Edges(4, 40, 24, 8), True, True
+  levels.Edges(16, 160, 24, 8), levels.Edges(4, 40, 24, 8), True, True, 0.75
 )
 # Of a picture of little else.
-TARGET = Scene(levels.Edges(4, 0, 8, 2), None, False, False)
+TARGET = Scene(levels.Edges(4, 0, 8, 2), None, False, False, _MIN_FIT)
 
 
 class Alignment:
@@ -53,7 +56,8 @@ class Alignment:
 
   Attributes:
     tells_shifts: Whether there are enough edges to know where it is.
-    moving: Whether the last image had to be shifted.
+    moving: Whether the last image had to be shifted...
+    sways: ...or any one so far.
   """
 
   def __init__(
@@ -68,7 +72,14 @@ class Alignment:
     """
     self._geometry, self._scene = geometry, scene
     self._nothing = np.array([*np.zeros(geometry.count), 1.0, 0.0])
-    self._reference = difference.grey(image)
+    self._fit = self._last = self._nothing
+    self.sways = self.moving = False
+    self.renew(difference.grey(image))
+
+  def renew(self, reference: np.ndarray) -> None:
+    """Takes another reference, (H, W) uint8, in the place of the one so far."""
+    geometry, scene = self._geometry, self._scene
+    self._reference = reference
     soft = difference.soften(self._reference)
     self._level = level = levels.Level(soft, geometry, scene.edges)
     self.tells_shifts = level.tells_shifts
@@ -81,9 +92,7 @@ class Alignment:
     # Deviation of each motion for that of the pixels.
     self._spread = np.linalg.norm(level.inverse[:-2], axis=1)
     self._useful = np.ptp(level.levels) > _MIN_RANGE
-    self._fit = self._last = self._nothing
     self._bands = bands.Bands(self._reference)
-    self._sways = self.moving = False
 
   @property
   def shift_px(self) -> np.ndarray:
@@ -103,7 +112,7 @@ class Alignment:
     change = self._change(image)
     if (
       self._scene.banded
-      and not self._sways
+      and not self.sways
       and levels.scatter(change) >= _STILL_LEVELS
     ):
       image = self._bands.undo(difference.grey(image))
@@ -121,13 +130,14 @@ class Alignment:
     """
     soft = difference.soften(grey)
     fit, share, scatter = self._level.solve(soft, self._guess(soft))
-    if share < _MIN_FIT or not _GAINS[0] < fit[-2] < _GAINS[1]:
+    least = self._scene.least if self.sways else _MIN_FIT
+    if share < least or not _GAINS[0] < fit[-2] < _GAINS[1]:
       self._fit = self._nothing
       return self._same_in_other_light(grey)
     motion_px = np.abs(fit[:-2])
     still_px = self._still_px(_DEVIATIONS * scatter)
-    self._sways |= bool((motion_px > still_px).any())
-    if (motion_px < (_REST_PX if self._sways else still_px)).all():
+    self.sways |= bool((motion_px > still_px).any())
+    if (motion_px < (_REST_PX if self.sways else still_px)).all():
       fit[:-2] = 0.0
     change = (fit[-2] - 1) * self._sharp + fit[-1]
     still = not fit[:-2].any() and _little(change)
@@ -136,7 +146,7 @@ class Alignment:
 
   def _same_in_other_light(self, grey: np.ndarray) -> bool:
     """Whether it is the picture of a camera at rest, lit elsewise in parts."""
-    if self._sways or not self._scene.banded:
+    if self.sways or not self._scene.banded:
       return False
     evened = light.evened(self._reference, grey)
     if evened is None:

@@ -6,6 +6,7 @@ an offset).
 """
 
 import dataclasses
+import math
 
 import cv2
 import numpy as np
@@ -19,6 +20,8 @@ _ENOUGH_PX = 0.02  # A smaller step is the last one.
 _OUTLIER = 4.0  # So many medians of all residuals...
 _OUTLIER_LEVELS = 3.0  # ...and at least so many grey levels do not fit.
 _EXPLAINED = 0.5  # Of the range of levels; what is nearer than this fits.
+_LEAST_SEEN = 0.25  # Of all pixels that are compared; fewer tell nothing.
+_EDGE_PX = 0.5  # What is farther out of a picture is not seen.
 
 
 @dataclasses.dataclass(frozen=True)
@@ -85,22 +88,35 @@ class Level:
     """
     fit, table = start.copy(), self._table.copy()
     for _ in range(_STEPS):
-      residual = self._residual(soft, fit)
-      fits = np.abs(residual) <= outlier(scatter(residual))
+      residual, seen = self._residual(soft, fit)
+      if seen.mean() < _LEAST_SEEN:
+        return fit, 0.0, math.inf
+      fits = seen & (np.abs(residual) <= outlier(scatter(residual[seen])))
       table[:-2] = fit[-2] * self._table[:-2]
       step = np.linalg.lstsq(table[:, fits].T, residual[fits], rcond=1e-6)[0]
       fit += step
       if np.abs(step[:-2]).max() < _ENOUGH_PX:
         break
-    residual = self._residual(soft, fit)
+    residual, seen = self._residual(soft, fit)
+    if seen.mean() < _LEAST_SEEN:
+      return fit, 0.0, math.inf
+    residual = residual[seen]
     explained = np.abs(residual) < _EXPLAINED * fit[-2] * self._range
     return fit, float(explained.mean()), scatter(residual)
 
-  def _residual(self, soft: np.ndarray, fit: np.ndarray) -> np.ndarray:
-    """What an image has more than the reference brought to it, (K,)."""
+  def _residual(
+    self, soft: np.ndarray, fit: np.ndarray
+  ) -> tuple[np.ndarray, np.ndarray]:
+    """What an image has more than the reference brought to it, (K,).
+
+    Returns:
+      Also which pixels are in the image, (K,).
+    """
     places = self._geometry.moved(self._places_px, fit[:-2])
-    seen = cv2.remap(soft, *places, cv2.INTER_LINEAR).ravel()
-    return seen - fit[-2:] @ self._table[-2:]
+    outer_px = np.array(soft.shape[::-1])[:, None] - 1 + _EDGE_PX
+    seen = ((places >= -_EDGE_PX) & (places <= outer_px)).all(axis=0)
+    levels = cv2.remap(soft, *places, cv2.INTER_LINEAR).ravel()
+    return levels - fit[-2:] @ self._table[-2:], seen
 
 
 def scatter(residual: np.ndarray) -> float:  # (K,)

@@ -109,6 +109,25 @@ def test_another_picture_is_refused(other: np.ndarray) -> None:
   assert room(scene()).step(other) is None
 
 
+def test_edges_that_have_left_the_picture_are_not_missed() -> None:
+  flat = np.full_like(scene(), 120)
+  image = flat.copy()
+  image[430:, 60:600] = scene()[430:, 60:600]  # As of a floor far below.
+  image[90:100, 100:540:40] = 30
+  align = room(image)
+  for degrees in (
+    -1.0,
+    -2.5,
+    -4.0,
+    -5.0,
+  ):  # The nose goes down, the floor leaves.
+    back = align.step(turned(image, degrees, 0.0, 0.0))
+    assert back is not None
+    np.testing.assert_allclose(
+      align.shift_px[1], -415.7 * np.radians(degrees), atol=1.5
+    )
+
+
 def test_nothing_is_told_from_a_reference_without_contrast() -> None:
   flat = np.full_like(scene(), 90)
   other = scene()
