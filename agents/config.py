@@ -2,7 +2,7 @@
 
 import dataclasses
 
-from waggle_tasks.agents import group
+from waggle_tasks.agents import group, viewpoints
 from waggle_tasks.agents import wandering as wandering_lib
 from waggle_tasks.protocol import camera, frame
 
@@ -74,6 +74,9 @@ class Differencing(group.Group):
     most_share: Largest share of it: a target that comes close grows.
     most_wider: How many times wider or narrower it may come to look, 0: any...
     most_higher: ...and higher: what is flat looks so from above and below.
+    sway_wider: The same of a target that leaves its place before a camera that
+      sways, where nothing else is proof, if any may look so elsewhere...
+    sway_higher: ...and higher.
     reach_widths: How far from where it hovered, in apparent widths, it is
       sought when it was lost, 0 for anywhere.
     separate_s: How long a first motion may take to leave its own ghost.
@@ -104,11 +107,22 @@ class Differencing(group.Group):
   most_share: float = group.number(6.0, 1, 1000)
   most_wider: float = group.number(0.0, 0, 1000)
   most_higher: float = group.number(0.0, 0, 1000)
+  sway_wider: float = group.number(1.5, 0, 1000)
+  sway_higher: float = group.number(2.5, 0, 1000)
   reach_widths: float = group.number(0.0, 0, 1000)
   separate_s: float = 4.0
   forget_s: float = 1.5
   relearn_s: float = 10.0
   max_gap_s: float = 0.2
+
+  @property
+  def swaying(self) -> 'Differencing':
+    """The numbers where a camera sways before the target has moved."""
+    if self.most_wider:
+      return self
+    return dataclasses.replace(
+      self, most_wider=self.sway_wider, most_higher=self.sway_higher
+    )
 
 
 @dataclasses.dataclass(frozen=True)
@@ -166,33 +180,6 @@ class Excursion(group.Group):
   def slow_px_s(self, width_px: float) -> float:
     """The image speed below which a target of this apparent width rests."""
     return max(self.off_px_s, self.off_widths_s * width_px)
-
-
-@dataclasses.dataclass(frozen=True)
-class Views(group.Group):
-  """Where a codebook may be seen from.
-
-  Attributes:
-    max_angle_deg: Largest viewing angle to either side.
-    angles: How many, from one side to the other.
-    min_distance_m: Nearest view.
-    max_distance_m: Farthest view.
-    distances: How many, in equal ratios; with one, the nearest.
-  """
-
-  max_angle_deg: float = group.number(85.0, 0, 180)
-  angles: int = group.number(35, 2, 181)
-  min_distance_m: float = group.number(0.5, 0.2, 100)
-  max_distance_m: float = group.number(4.0, 0.2, 100)
-  distances: int = group.number(13, 1, 50)
-
-  def __post_init__(self) -> None:
-    super().__post_init__()
-    if self.min_distance_m > self.max_distance_m:
-      raise group.ReceiverError(
-        '`min_distance_m` must be at most `max_distance_m`,'
-        f' {self.max_distance_m:g}: got {self.min_distance_m:g}'
-      )
 
 
 @dataclasses.dataclass(frozen=True)
@@ -282,14 +269,14 @@ class Config:
   recognition: RecognitionLimits = RecognitionLimits()
   stillness: Stillness = Stillness()
   framing: frame.Rules = frame.Rules()
-  views: Views | None = None
+  views: viewpoints.Views | None = None
 
   def __post_init__(self) -> None:
     group.check_kinds(self)
 
 
 KLT = Config()
-KLT_BANK = Config(views=Views())
+KLT_BANK = Config(views=viewpoints.Views())
 ABSOLUTE = Config(
   Differencing(),
   Excursion(),
@@ -297,4 +284,4 @@ ABSOLUTE = Config(
     max_widths_s=0.15, jump_widths=0.1, max_stale_s=0.4, bridges=True
   ),
 )
-VIEW_BANK = dataclasses.replace(ABSOLUTE, views=Views())
+VIEW_BANK = dataclasses.replace(ABSOLUTE, views=viewpoints.Views())

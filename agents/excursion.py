@@ -84,7 +84,9 @@ class ExcursionSegmenter:
       not self.wander.sways
       or elapsed.lasted(self._away_since_s, now_s, self._least_s)
     ):
-      return self._finish(self._back_since_s)
+      # Where home has wandered away, it rests before it is back.
+      rested = self._slow_since_s if self.wander.sways else self._back_since_s
+      return self._finish(rested)
     if elapsed.lasted(self._slow_since_s, now_s, config.stay_s):
       return self._finish(self._slow_since_s)
     return None

@@ -53,6 +53,7 @@ class Separation:
 
   Attributes:
     greys: Times and images, (H, W) uint8, so far; None for no image of it.
+    tells: Whether it tells a target from others by its looks.
   """
 
   def __init__(
@@ -77,7 +78,7 @@ class Separation:
     self._detector = detector
     self._background = background
     self._config = config
-    self._tells = config.most_wider > 0  # A target from others, by its looks.
+    self.tells = config.most_wider > 0
     self.greys: list[tuple[float, np.ndarray | None]] = []
 
   def add(self, grey: np.ndarray | None, time_s: float) -> None:
@@ -107,13 +108,13 @@ class Separation:
     changes = blobs.sums(weigh(grey, before, sigmas, spread=2.0, wide=True))
     still = changes < _MAX_CHANGE * totals
     home = still & blobs.inside(self._home)
-    most = totals[home].max(initial=0.0) if self._tells else totals.max()
+    most = totals[home].max(initial=0.0) if self.tells else totals.max()
     large = totals > _MIN_SHARE * most
     home, away = (np.flatnonzero(large & each) for each in (home, ~still))
     if not len(home):
       return None
     middle_px = np.array([grey.shape[1], grey.shape[0]]) / 2
-    if not self._tells:
+    if not self.tells:
       home = blobs.about(home, middle_px)
       return self._left(blobs, home, away, middle_px)
     while len(away):  # The nearest that is like what is missing.

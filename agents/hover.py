@@ -168,8 +168,9 @@ class Hover:
       grey = difference.grey(image, middle)
       if self._wanders or self._moved(grey, background[middle], 1.0):
         self._since_s = time_s
+        config = self._config.swaying if self._slack_px else self._config
         separation = self._separation = ghost.Separation(
-          self._detector, _strict(background), self._config,
+          self._detector, _strict(background), config,
           difference.middle(image, _REST_PX), middle,
         )  # fmt: skip
         whole = difference.grey(image)
@@ -278,8 +279,7 @@ class Hover:
         self._separation = None
         return None
     # Who is told by its looks may be gone, whatever the room looks like.
-    told = self._config.most_wider > 0
-    if (told or not resting) and (found := separation.find()):
+    if (separation.tells or not resting) and (found := separation.find()):
       return Departure(
         aligner, self._detector, self._speckled, background,
         self._slack_px, found, separation.greys,

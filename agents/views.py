@@ -14,8 +14,7 @@ import math
 
 import numpy as np
 
-from waggle_tasks.agents import config as config_lib
-from waggle_tasks.agents import group
+from waggle_tasks.agents import group, viewpoints
 from waggle_tasks.protocol import agreement as agreement_lib
 from waggle_tasks.protocol import camera as camera_lib
 from waggle_tasks.protocol import gestures
@@ -149,7 +148,7 @@ class Sightings:
 
 
 def templates(
-  agreement: agreement_lib.Agreement, config: config_lib.Views | None
+  agreement: agreement_lib.Agreement, config: viewpoints.Views | None
 ) -> Templates:
   """The codebook from many views, or from the front alone without any."""
   if config is None:
@@ -167,7 +166,7 @@ def frontal(codebook: gestures.Codebook) -> Templates:
 @functools.cache
 def bank(
   codebook: gestures.Codebook,
-  config: config_lib.Views,
+  config: viewpoints.Views,
   camera: camera_lib.Camera,
 ) -> Templates:
   """Each gesture seen from all around, by symbol and then by view.

@@ -50,7 +50,8 @@ class Wander:
     self._least_px, self._least_px_s = away_px, slow_px_s
     self._ways = self._speeds = self._time_s = 0.0
     self.away_px, self.slow_px_s = away_px, slow_px_s
-    self.back_px = max(config.most_wander_widths * width_px, away_px)
+    self._most_px = max(config.most_wander_widths * width_px, away_px)
+    self.back_px = max(config.back_widths * width_px, away_px)
     self.sways = False
     self._recent: deque[tuple[klt.Track, np.ndarray, float]] = deque()
     self._place_px = self._mean_px = self.home_px = home_px
@@ -105,7 +106,7 @@ class Wander:
       self.home_px = self._mean_px
       far_px = config.wander_widths * self._width_px
       far_px = max(config.wander_times * usual_px, far_px)
-      self.away_px = max(min(far_px, self.back_px), self._least_px)
+      self.away_px = max(min(far_px, self._most_px), self._least_px)
       most_px_s = config.most_wander_widths_s * self._width_px
       fast_px_s = min(config.wander_speeds * usual_px_s, most_px_s)
       self.slow_px_s = max(fast_px_s, self._least_px_s)
@@ -115,7 +116,7 @@ class Wander:
     left_s = math.inf
     for track in tracks[::-1]:
       way_px = np.hypot(*(track.centre_px - self.home_px))
-      if track.valid and way_px < self.back_px:
+      if track.valid and way_px < self._most_px:
         break
       left_s = track.time_s
     home_px = self.home_px
