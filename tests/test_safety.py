@@ -252,6 +252,21 @@ def test_the_performer_is_kept_clear_of_too(load: Load) -> None:
   assert 'the way would pass performer at 0.' in refusal.reason
 
 
+@pytest.mark.parametrize(('language', 'refused'), [('swift', 1), ('paper', 0)])
+def test_a_place_where_a_dance_will_be_is_not_free(
+  load: Load, language: str, refused: int
+) -> None:
+  """START leads above the hover point, in the paper only after the flight."""
+  environment = load(
+    'broadcast', cameras=False, observers=1, language=language,
+    layout=Places(((0, -0.6),)),
+  )  # fmt: skip
+  fly(environment, [(0, 0.6, 0.3)], 60)
+  refusals = environment.task.refusals
+  assert len(refusals) == refused
+  assert all('would pass performer' in each.reason for each in refusals)
+
+
 def test_who_counts_on_one_that_is_refused_is_refused_too(load: Load) -> None:
   """The first would hit the performer and stays, in the way of the others."""
   layout = Places(((0, -0.5), (0, -0.8), (0, -1.1)))

@@ -30,7 +30,8 @@ class Flights:
     self._agreement = parts.agreement
     self._minimum_spacing_m = parts.minimum_spacing_m
     homes_m = {name: np.array(pose.position_m) for name, pose in homes.items()}
-    dancers_m = [homes_m.pop(name) for name in parts.dancers]
+    self._dancers, self._homes = parts.dancers, homes
+    dancers_m = [homes_m.pop(name) for name in self._dancers]
     self._escort: escort_lib.Escort | None = None
     if parts.safety == 'avoid':
       self._escort = escort_lib.Escort(parts, dancers_m)
@@ -112,8 +113,9 @@ class Flights:
       if safety.is_due(plan, time_s)
     }
     plans = {gate.name: gate.plan for gate in self._gates if gate.plan}
-    others: dict[str, flight.Flight | np.ndarray] = {
+    others: dict[str, safety.Other] = {
       **positions_m,
+      **self._dances(positions_m, time_s),
       **plans,
       **self._requests,
     }
@@ -126,6 +128,23 @@ class Flights:
         gate.judge(plan, reasons.get(gate.name))
         if self._escort:
           self._escort.begin(gate.name, gate.hold_m, plan.goal_m)
+
+  def _dances(
+    self, positions_m: Mapping[str, np.ndarray], time_s: float
+  ) -> dict[str, safety.Other]:
+    """Where dancers are going to be: they may say their message again."""
+
+    def way(name: str) -> safety.Other:
+      home, dancer = self._homes[name], self._dancers[name].vehicle
+
+      def told_m(at_s: float) -> np.ndarray:
+        home_m = np.array(home.position_m)
+        return dancer.motion(home_m, home.yaw_rad, at_s)[0]
+
+      now_m = told_m(time_s)
+      return lambda at_s: positions_m[name] + (told_m(at_s) - now_m)
+
+    return {name: way(name) for name in self._dancers}
 
   def _aim(
     self,

@@ -6,7 +6,7 @@ with 'avoid' every command is accepted, and vehicles keep away from each other
 by themselves, see `convoy`.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 import dataclasses
 
 import numpy as np
@@ -32,6 +32,9 @@ COMMAND_M = 0.01
 _CORRIDOR_M = 0.05
 # Moments at which the spacing of two plans is compared.
 _MOMENTS_S = np.linspace(0.0, flight.DURATION_S, 61)
+# Where another vehicle is going to be: on its own plan, where it stays, (3,),
+# or, of one that dances, at a time, (3,).
+Other = flight.Flight | np.ndarray | Callable[[float], np.ndarray]
 
 
 def kept_m(wander_m: float, minimum_m: float = MINIMUM_SPACING_M) -> float:
@@ -88,15 +91,14 @@ def is_due(plan: flight.Flight, time_s: float) -> bool:
 
 def conflict(
   plan: flight.Flight,
-  others: Mapping[str, flight.Flight | np.ndarray],
+  others: Mapping[str, Other],
   minimum_m: float,
 ) -> str | None:
   """Whether a plan comes too near to another vehicle.
 
   Args:
     plan: The flight to judge.
-    others: By vehicle name, its own plan, or (3,) the true position in which
-      it is taken to stay.
+    others: By vehicle name, where it is going to be.
     minimum_m: Smallest distance allowed between two centres of mass.
 
   Returns:
@@ -107,6 +109,8 @@ def conflict(
   for name, other in others.items():
     if isinstance(other, flight.Flight):
       other = np.stack([other.motion(t)[0] for t in times_s])
+    elif callable(other):
+      other = np.stack([other(t) for t in times_s])
     nearest_m = np.linalg.norm(own_m - other, axis=1).min()
     if nearest_m < minimum_m:
       return (
@@ -118,7 +122,7 @@ def conflict(
 
 def refuse(
   due: Mapping[str, flight.Flight],
-  others: Mapping[str, flight.Flight | np.ndarray],
+  others: Mapping[str, Other],
   positions_m: Mapping[str, np.ndarray],
   minimum_m: float,
 ) -> dict[str, str]:
@@ -129,7 +133,7 @@ def refuse(
 
   Args:
     due: The plans to judge, by vehicle name.
-    others: By name, every vehicle's plan, or (3,) where it stays.
+    others: By name, where every vehicle is going to be.
     positions_m: By name, where every vehicle is, (3,) each.
     minimum_m: Smallest distance allowed between two centres of mass.
 
