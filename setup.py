@@ -11,10 +11,11 @@ FOLDERS = ('entities', 'arenas', 'agents', 'experiments')
 VIDEO = ('av>=17.1',)
 CLUSTER = ('distributed>=2025.1',)
 ANALYSIS = ('matplotlib>=3.9',)
+RL = ('gymnasium>=1.0', 'pettingzoo>=1.24.3')
 TEST = (
   'pytest>=8', 'pytest-timeout>=2.2', 'pytest-xdist>=3.1', 'hypothesis>=6.16',
   'setuptools>=77',
-  *CLUSTER, *ANALYSIS, *VIDEO,
+  *CLUSTER, *ANALYSIS, *VIDEO, *RL,
 )  # fmt: skip
 DEV = (*TEST, 'ruff>=0.14', 'mypy>=2.4', 'build>=1')
 
@@ -102,6 +103,7 @@ setuptools.setup(
     'video': VIDEO,
     'cluster': CLUSTER,
     'analysis': ANALYSIS,
+    'rl': RL,
     'test': TEST,
     'dev': DEV,
   },

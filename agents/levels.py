@@ -114,9 +114,9 @@ class Level:
     """
     places = self._geometry.moved(self._places_px, fit[:-2])
     outer_px = np.array(soft.shape[::-1])[:, None] - 1 + _EDGE_PX
-    seen = ((places >= -_EDGE_PX) & (places <= outer_px)).all(axis=0)
+    inside = (places >= -_EDGE_PX) & (places <= outer_px)  # (2, K)
     levels = cv2.remap(soft, *places, cv2.INTER_LINEAR).ravel()
-    return levels - fit[-2:] @ self._table[-2:], seen
+    return levels - fit[-2:] @ self._table[-2:], np.all(inside, axis=0)
 
 
 def scatter(residual: np.ndarray) -> float:  # (K,)

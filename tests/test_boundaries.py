@@ -42,6 +42,11 @@ ROOMS = {
     'agents', frozenset({'protocol'}), frozenset({'numpy', 'cv2', 'xxhash'})
   ),
   'tasks': Room('waggle_tasks/tasks', PARTS, SIMULATOR | {'numpy'}),
+  'rl': Room(
+    'waggle_tasks/rl',
+    PARTS | {'tasks'},
+    frozenset({'numpy', 'gymnasium', 'pettingzoo'}),
+  ),
   '': Room('waggle_tasks', PARTS | {'tasks'}, SIMULATOR | {'numpy'}, '*.py'),
 }
 FILES = [
@@ -76,7 +81,7 @@ def is_allowed(name: str, home: str, room: Room) -> bool:
     not (ROOT / part).is_dir() and not (ROOT / 'waggle_tasks' / part).is_dir()
   )
   if beside:  # A module of waggle_tasks itself.
-    return part in OPEN or home in ('', 'tasks')
+    return part in OPEN or home in ('', 'tasks', 'rl')
   return part == home or part in room.rooms
 
 

@@ -179,7 +179,9 @@ BRIEF = ('--control=no_send', '--observers=1', '--duration_s=2')
   ('output', 'statuses', 'left'),
   [
     ((), [0, 0], ['broadcast-1', 'broadcast-2']),
-    (('--output=runs/mine',), [0, 2], ['mine']),
+    pytest.param(
+      ('--output=runs/mine',), [0, 2], ['mine'], marks=pytest.mark.slow
+    ),
   ],
 )
 def test_two_at_once_never_fly_for_the_same_folder(
@@ -209,7 +211,11 @@ def test_two_at_once_never_fly_for_the_same_folder(
 
 @pytest.mark.parametrize(
   ('number', 'status'),
-  [(signal.SIGINT, 130), (signal.SIGTERM, None), (signal.SIGHUP, None)],
+  [
+    (signal.SIGINT, 130),
+    pytest.param(signal.SIGTERM, None, marks=pytest.mark.slow),
+    pytest.param(signal.SIGHUP, None, marks=pytest.mark.slow),
+  ],
 )
 def test_an_interrupted_run_leaves_no_half_written_file(
   number: signal.Signals, status: int | None, tmp_path: pathlib.Path

@@ -44,7 +44,7 @@ def check_all_flew(played: Played) -> None:
   ('payload', 'observers', 'layout'),
   [
     ('000110', 1, 'arc'),
-    ('001010', 2, 'line'),
+    pytest.param('001010', 2, 'line', marks=pytest.mark.slow),
     pytest.param('100010', 2, 'arc', marks=pytest.mark.slow),
     pytest.param('000010', 5, 'arc', marks=pytest.mark.slow),
   ],

@@ -269,7 +269,9 @@ def test_a_place_beside_the_performer_is_found_while_all_hover(
   assert told.least_m() > safety.MINIMUM_SPACING_M
 
 
-@pytest.mark.parametrize('estimator', ['mocap', 'flow_deck'])
+@pytest.mark.parametrize(
+  'estimator', ['mocap', pytest.param('flow_deck', marks=pytest.mark.slow)]
+)
 def test_errors_and_hover_widen_what_is_kept(
   estimator: str, flown: Callable[..., Told]
 ) -> None:

@@ -24,9 +24,19 @@ def fly(**changes: object) -> tuple[verdicts.Outcome, list[receiver.Event]]:
   return outcome, [e for e in events if isinstance(e, receiver.Event)]
 
 
-@pytest.mark.parametrize('language', languages.LANGUAGES)
 @pytest.mark.parametrize(
-  ('distance_m', 'bearing_deg', 'noise_sigma'), [(1.3, 0, 0), (3.0, 75, 10)]
+  'language',
+  [
+    pytest.param(name, marks=[pytest.mark.slow] * (name == 'gentle'))
+    for name in languages.LANGUAGES
+  ],
+)
+@pytest.mark.parametrize(
+  ('distance_m', 'bearing_deg', 'noise_sigma'),
+  [
+    pytest.param(1.3, 0, 0, marks=pytest.mark.slow),
+    (3.0, 75, 10),
+  ],
 )
 def test_a_message_is_read_and_flown(
   language: str, distance_m: float, bearing_deg: float, noise_sigma: float
@@ -86,7 +96,10 @@ def test_a_frame_that_was_hidden_is_read_in_the_next_round() -> None:
   [
     {'sensor': sensor.Sensor(dropped_share=0.3)},
     {'sensor': sensor.Sensor(blackout_s=3.2, blackout_length_s=0.6)},
-    {'drift': drift.Drift(performer_hover='mocap'), 'seed': 1},
+    pytest.param(
+      {'drift': drift.Drift(performer_hover='mocap'), 'seed': 1},
+      marks=pytest.mark.slow,
+    ),
     {'drift': HOVER, 'seed': 858278},
     {'dynamics': 'rotors'},
     {'surroundings': surroundings.Surroundings(0, 5.0), 'repeat': 2},
@@ -98,6 +111,7 @@ def test_swift_bears_it(spoilt: dict) -> None:
   assert outcome.decoded == '011010'
 
 
+@pytest.mark.slow
 def test_brisk_is_read_of_a_dancer_that_hovers() -> None:
   hover = drift.Drift(performer_hover='mocap')
   outcome, _ = fly(language='brisk', payload='011010', drift=hover, seed=1)
@@ -113,10 +127,15 @@ def test_who_sees_nothing_at_first_learns_the_scene_later() -> None:
 @pytest.mark.parametrize(
   ('language', 'name', 'seed'),
   [
-    *(('swift', name, 5) for name in FRAMES),
+    *(
+      pytest.param(
+        'swift', name, 5, marks=[pytest.mark.slow] * bool(number % 3)
+      )
+      for number, name in enumerate(FRAMES)
+    ),
     ('swift', 'repeated', 475138),  # START and the levels 7 and 0 are alike.
-    ('brisk', 'seven_bits', 5),
-    ('brisk', 'begun_anew', 5),
+    pytest.param('brisk', 'seven_bits', 5, marks=pytest.mark.slow),
+    pytest.param('brisk', 'begun_anew', 5, marks=pytest.mark.slow),
     ('brisk', 'start_repeated', 640181),  # A START where a bit should be.
   ],
 )

@@ -57,7 +57,11 @@ def hidden(
 @pytest.mark.parametrize(
   ('control', 'name'),
   [
-    pytest.param(control, name, marks=[pytest.mark.slow] * second)
+    pytest.param(
+      control,
+      name,
+      marks=[pytest.mark.slow] * (second or control != 'seven_bits'),
+    )
     for control in HIDDEN
     for second, name in enumerate(['view_bank', 'klt'])
   ],

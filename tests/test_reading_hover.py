@@ -27,7 +27,7 @@ def read(seed: int, hover: drift.Drift, **fields: object) -> verdicts.Verdict:
 @pytest.mark.parametrize(
   'hover',
   [
-    drift.Drift(performer_hover='mocap'),
+    pytest.param(drift.Drift(performer_hover='mocap'), marks=LONG),
     pytest.param(drift.Drift(performer_hover='flow_deck'), marks=LONG),
     pytest.param(drift.Drift(observer_hover='mocap'), marks=LONG),
     pytest.param(

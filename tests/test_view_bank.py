@@ -244,13 +244,13 @@ def test_swaying_cameras_read_the_message(
   ('aside_m', 'earlier_s', 'is_read'),
   [
     (0.36, 0.2, True),
-    (0.5, 0.0, True),
+    pytest.param(0.5, 0.0, True, marks=pytest.mark.slow),
     (-0.5, -0.2, True),
     # Their ways cross.
     (-0.36, 0.2, False),
     (0.36, 1.0, False),
     # Who dances alone beside the middle may be anybody.
-    (0.36, 4.0, False),
+    pytest.param(0.36, 4.0, False, marks=pytest.mark.slow),
     (-0.5, 4.0, False),
   ],
 )
@@ -268,6 +268,7 @@ def test_of_two_dancers_the_one_in_the_middle_is_read_or_none(
   assert messages(events) or not is_read
 
 
+@pytest.mark.slow
 def test_black_images_are_read_as_nothing() -> None:
   assert watch(message_path('000010'), 9.0, spoil=lambda *_: BLACK) == []
 

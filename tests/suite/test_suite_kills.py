@@ -61,8 +61,9 @@ def test_a_worker_killed_in_mid_case_leaves_no_trace_in_the_results(
 
 @pytest.mark.parametrize(
   'number',
-  [signal.SIGTERM, pytest.param(signal.SIGHUP, marks=pytest.mark.slow)],
+  [signal.SIGTERM, signal.SIGHUP],
 )
+@pytest.mark.slow
 def test_a_suite_that_is_asked_to_end_leaves_no_drafts(
   launched: Launched,
   fresh: object,

@@ -362,8 +362,18 @@ except errors.WaggleError as error:
 @pytest.mark.parametrize(
   ('victim', 'number', 'said'),
   [
-    ('scheduler', signal.SIGKILL, 'the connection to it is lost'),
-    ('scheduler', signal.SIGSTOP, 'for 1 s what listens there answers nothing'),
+    pytest.param(
+      'scheduler',
+      signal.SIGKILL,
+      'the connection to it is lost',
+      marks=pytest.mark.slow,
+    ),
+    pytest.param(
+      'scheduler',
+      signal.SIGSTOP,
+      'for 1 s what listens there answers nothing',
+      marks=pytest.mark.slow,
+    ),
     ('worker', signal.SIGKILL, 'for 1 s it has no workers'),
   ],
 )

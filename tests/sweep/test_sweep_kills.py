@@ -71,6 +71,7 @@ def test_a_killed_sweep_ends_as_if_it_had_not_been(
   assert tables(sweep) == tables(flown)
 
 
+@pytest.mark.slow
 def test_a_killed_worker_leaves_no_trace_in_the_results(
   launched: Launched,
   sweep: object,

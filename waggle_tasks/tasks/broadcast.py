@@ -1,6 +1,7 @@
 """The broadcast: one performer dances, observers read it and fly."""
 
 from collections.abc import Sequence
+import dataclasses
 
 from dm_control import mjcf
 from dm_control.composer.observation import observable
@@ -10,6 +11,7 @@ import numpy as np
 from waggle_tasks.arenas import flight_room
 from waggle_tasks.entities import observer, performer
 from waggle_tasks.protocol import agreement as agreement_lib
+from waggle_tasks.protocol import performance as performance_lib
 from waggle_tasks.tasks import (
   actions,
   contacts,
@@ -17,6 +19,7 @@ from waggle_tasks.tasks import (
   episode_clock,
   fleet,
   flights,
+  progress,
   safety,
   steps,
   switches,
@@ -95,6 +98,20 @@ class Broadcast(copies.Uncopied, steps.Framed):
     ]
     usual = [{name: all_[name] for name in OBSERVATIONS} for all_ in everything]
     return [{**a, **b} for a, b in zip(usual, everything, strict=True)]
+
+  def say(
+    self, performance: performance_lib.Performance, duration_s: float
+  ) -> None:
+    """Lets the performer fly something else from the next reset on.
+
+    Args:
+      performance: What it flies, in the language that is agreed.
+      duration_s: How long an episode lasts at most.
+    """
+    self._parts = dataclasses.replace(
+      self._parts, performance=performance, duration_s=duration_s
+    )
+    self._dancers = self._parts.dancers
 
   def after_compile(
     self, physics: mjcf.Physics, random_state: np.random.RandomState
@@ -248,6 +265,11 @@ class Broadcast(copies.Uncopied, steps.Framed):
   def refusals(self) -> tuple[safety.Refusal, ...]:
     """The commands that the safety checks refused in this episode."""
     return self._flights.refusals
+
+  @property
+  def achieved(self) -> tuple[progress.Progress, ...]:
+    """What each observer has achieved in this episode."""
+    return self._flights.achieved
 
   def get_reward(self, physics: mjcf.Physics) -> list[float]:
     """One reward for each observer, see the class."""

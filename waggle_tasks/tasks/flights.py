@@ -62,6 +62,11 @@ class Flights:
     return all(each.done for each in self._progress)
 
   @property
+  def achieved(self) -> tuple[progress.Progress, ...]:
+    """What each observer has achieved, in their order."""
+    return tuple(self._progress)
+
+  @property
   def refusals(self) -> tuple[safety.Refusal, ...]:
     """The commands that the safety checks refused."""
     return tuple(gate.refusal for gate in self._gates if gate.refusal)
