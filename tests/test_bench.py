@@ -17,6 +17,7 @@ from waggle_tasks.agents import receivers
 from waggle_tasks.experiments.bench_parts import (
   cameras,
   events,
+  learners,
   loops,
   pilots,
   processes,
@@ -153,6 +154,26 @@ def test_a_measurement_that_cannot_be_made_is_refused(
 def test_parts_are_measured_in_their_own_order() -> None:
   assert sections.chosen(['workers', 'cameras']) == ['cameras', 'workers']
   assert sections.chosen([]) == [*sections.SECTIONS]
+
+
+def test_learners_are_measured_where_what_they_take_is_installed(
+  monkeypatch: pytest.MonkeyPatch,
+) -> None:
+  monkeypatch.setattr(learners, 'installed', lambda: False)
+  assert sections.chosen([]) == [
+    name for name in sections.SECTIONS if name != 'learners'
+  ]
+  with pytest.raises(
+    sections.BenchError, match=r"pip install 'waggle-tasks\[rl"
+  ):
+    sections.chosen(['learners'])
+
+
+def test_steps_of_learners_are_set_beside_those_with_pictures() -> None:
+  found = learners.Learning({'no pictures': [0.5, 0.1], 'pictures': [1.0, 0.4]})
+  text = tables.text({'learners': found})
+  assert 'steps of a learner, no pictures / pictures  3.00' in text
+  assert text.splitlines()[-2].split() == ['no', 'pictures', '3']
 
 
 def test_a_length_that_is_asked_for_holds_for_every_broadcast() -> None:

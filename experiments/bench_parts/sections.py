@@ -8,6 +8,7 @@ from waggle_tasks import errors, registry, scenario
 from waggle_tasks.agents import receivers
 from waggle_tasks.experiments.bench_parts import (
   cameras,
+  learners,
   loops,
   pilots,
   processes,
@@ -149,6 +150,7 @@ SECTIONS: dict[str, Callable[[Settings], Any]] = {
     loops.repeat, settings, what=settings.spoken
   ),
   'dynamics': lambda settings: _alone(pilots.measure, settings),
+  'learners': lambda settings: _alone(learners.measure, settings),
   'observers': lambda settings: _alone(
     loops.repeat, settings, what=settings.crowds
   ),
@@ -160,11 +162,18 @@ SECTIONS: dict[str, Callable[[Settings], Any]] = {
 
 
 def chosen(names: Sequence[str]) -> list[str]:
-  """The names of `SECTIONS` that were asked for, all when none was.
+  """The names of `SECTIONS` that were asked for, all that can be when none was.
 
   Raises:
-    BenchError: if a name is not known.
+    BenchError: if a name is not known, or takes what is not installed.
   """
   for name in names:
     checks.choice('only', name, [*SECTIONS], BenchError)
-  return [name for name in SECTIONS if not names or name in names]
+  here = learners.installed()
+  if 'learners' in names and not here:
+    raise BenchError(
+      '`only` must not hold learners without the extra rl:'
+      " pip install 'waggle-tasks[rl]'"
+    )
+  wanted = names or [each for each in SECTIONS if here or each != 'learners']
+  return [name for name in SECTIONS if name in wanted]

@@ -10,6 +10,7 @@ from typing import Any
 
 from waggle_tasks.experiments.bench_parts import (
   cameras,
+  learners,
   loops,
   pilots,
   sections,
@@ -199,6 +200,23 @@ def _dynamics(found: pilots.Flying) -> str:
   return table.render(header, rows)
 
 
+def _learner_ratios(found: learners.Learning) -> Ratios:
+  seen_s = found.step_s['pictures']
+  return {
+    f'steps of a learner, {name} / pictures': _ratio(seen_s, step_s)
+    for name, step_s in found.step_s.items()
+    if name != 'pictures'
+  }
+
+
+def _learners(found: learners.Learning) -> str:
+  rows = [
+    (name, f'{1 / statistics.median(step_s):,.0f}')
+    for name, step_s in found.step_s.items()
+  ]
+  return table.render(('one agent', 'steps a second'), rows)
+
+
 def _observer_ratios(found: Sequence[loops.Loop]) -> Ratios:
   cost_s = _by_observers(found)
   title = f'cost of a receiver and frame, {_MANY} observers / {_FEW}'
@@ -250,6 +268,7 @@ _PARTS: dict[str, tuple[Callable[..., str], Callable[..., Ratios]]] = {
   'realtime': (_realtime, _realtime_ratios),
   'languages': (_languages, _language_ratios),
   'dynamics': (_dynamics, _dynamics_ratios),
+  'learners': (_learners, _learner_ratios),
   'observers': (_observers, _observer_ratios),
   'memory': (_memory, lambda found: {}),
   'workers': (_workers, _worker_ratios),

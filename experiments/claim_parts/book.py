@@ -243,6 +243,9 @@ CLAIMS = {
     'timings', kinds.UNCHECKED,
     detail='times and memory, which differ between runs',
   ),
+  'learners': kinds.Claim(
+    'learners', kinds.UNCHECKED, detail='times, which differ between runs'
+  ),
   'pictures': kinds.Claim(
     'pictures', kinds.UNCHECKED,
     detail='a test compares pictures with every run',
