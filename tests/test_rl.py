@@ -250,6 +250,33 @@ def test_steps_out_of_turn_are_refused() -> None:
     rl.gym_env('broadcast', observers=2)
 
 
+@pytest.mark.parametrize(
+  ('kind', 'wrong'),
+  [
+    (commands.MESSAGE, 65), (commands.MESSAGE, -1), (commands.MESSAGE, None),
+    (commands.DISPLACEMENT, [1.0, float('nan'), 0.0]),
+    (commands.DISPLACEMENT, [1.0, 2.0, 0.0]), (commands.REFERENCE, [0.0] * 12),
+  ],
+)  # fmt: skip
+def test_an_action_outside_of_its_space_is_refused(
+  kind: str, wrong: object
+) -> None:
+  env = parallel(observers=1, action=kind, **BLIND)
+  env.reset(seed=0)
+  with pytest.raises(needs.LearningError, match='of observer_1 must be in'):
+    env.step({'observer_1': wrong})
+  env.close()
+
+
+@pytest.mark.parametrize(
+  'changed', [{'observers': 2}, {'camera_width_px': 320}]
+)
+def test_a_draw_that_changes_spaces_is_refused(changed: dict) -> None:
+  env = parallel(observers=1, draw=lambda *_: changed, **BLIND)
+  with pytest.raises(needs.LearningError, match='`draw` must leave observers'):
+    env.reset(seed=0)
+
+
 def test_what_is_missing_is_said_with_the_line_that_mends_it() -> None:
   program = (
     'import sys\nsys.modules["pettingzoo"] = None\nimport importlib.util as u\n'

@@ -113,15 +113,18 @@ class ParallelBroadcast(pettingzoo.ParallelEnv):
     Args:
       seed: Begins the generator anew; None goes on with it.
       options: Takes none.
+
+    Raises:
+      LearningError: if what is drawn makes other spaces or agents.
     """
     del options
     if seed is not None:
       self._rng = np.random.default_rng(seed)
     drawn: dict[str, Any] = dict(self._draw(self._rng, self._asked))
     number = int(self._rng.integers(2**31))
-    environment = self._begin(
-      dataclasses.replace(self._asked, seed=number, **drawn)
-    )
+    scene = dataclasses.replace(self._asked, seed=number, **drawn)
+    self._check(scene)
+    environment = self._begin(scene)
     self._pilots = {
       agent: commands.Pilot(self._action, self._scene.agreement)
       for agent in self.possible_agents
@@ -129,6 +132,18 @@ class ParallelBroadcast(pettingzoo.ParallelEnv):
     self.agents = [*self.possible_agents]
     self._timestep = environment.reset()
     return self._look(), {agent: {} for agent in self.agents}
+
+  def _check(self, scene: scenario.Scenario) -> None:
+    """Refuses a scenario in which agents or spaces would be others."""
+    asked, drawn = (
+      (each.observers, each.agreement.camera, each.units.num_bits, each.bits)
+      for each in (self._asked, scene)
+    )
+    if asked != drawn:
+      raise needs.LearningError(
+        '`draw` must leave observers, camera, and bits as they are: got'
+        f' {drawn} for {asked}'
+      )
 
   def _begin(self, scene: scenario.Scenario) -> registry.Environment:
     """The environment of a scenario; that in use, where only words differ."""
@@ -158,7 +173,8 @@ class ParallelBroadcast(pettingzoo.ParallelEnv):
       actions: One of each agent that is left.
 
     Raises:
-      LearningError: if there is none of one, or before a reset.
+      LearningError: if there is none of one, or one that is not of its space,
+        or before a reset.
     """
     environment = self._environment
     if environment is None or not self.agents:
@@ -167,6 +183,8 @@ class ParallelBroadcast(pettingzoo.ParallelEnv):
       raise needs.LearningError(
         f'`actions` must hold one of {missing[0]}: got those of {[*actions]}'
       )
+    for agent in self.agents:
+      self._check_action(agent, actions[agent])
     references = []
     seen = zip(self.possible_agents, self._timestep.observation, strict=True)
     for agent, each in seen:
@@ -195,6 +213,16 @@ class ParallelBroadcast(pettingzoo.ParallelEnv):
     }
     self.agents = [agent for agent in self.agents if not reasons[agent]]
     return observations, rewards, ended, late, infos
+
+  def _check_action(self, agent: str, action: object) -> None:
+    space = self._actions[agent]
+    taken = action
+    if isinstance(space, spaces.Box):  # Whatever kind of numbers they are.
+      taken = np.asarray(action, space.dtype)
+    if not space.contains(taken):
+      raise needs.LearningError(
+        f'`actions` of {agent} must be in {space}: got {action!r}'
+      )
 
   def _reason(self, agent: str, task: broadcast.Broadcast) -> str:
     """Why an agent leaves the episode now; empty while it stays."""
