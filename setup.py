@@ -11,7 +11,7 @@ FOLDERS = ('entities', 'arenas', 'agents', 'experiments')
 VIDEO = ('av>=17.1',)
 CLUSTER = ('distributed>=2025.1',)
 ANALYSIS = ('matplotlib>=3.9',)
-RL = ('gymnasium>=1.0', 'pettingzoo>=1.24.3')
+RL = ('gymnasium>=1', 'pettingzoo>=1.25')
 TEST = (
   'pytest>=8', 'pytest-timeout>=2.2', 'pytest-xdist>=3.1', 'hypothesis>=6.16',
   'setuptools>=77',

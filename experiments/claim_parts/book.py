@@ -116,6 +116,10 @@ CLAIMS = {
     'hover-dancer', 2, '--performer_hover=mocap', observers=1,
     distance_m='1.6', bearing_deg='45',
   ),
+  'hover-observers': _sweep(
+    'hover-observers', 1, '--observer_hover=mocap', observers=1,
+    distance_m='1.3', bearing_deg='0',
+  ),
   'clutter': _sweep('clutter', 2, '--floor=clutter', table=0, walls='clutter'),
   'clutter-sway': _sweep(
     'clutter', 1, '--floor=clutter', *_SWAY, observers=2, how=kinds.PART,
