@@ -116,6 +116,10 @@ CLAIMS = {
     'hover-dancer', 2, '--performer_hover=mocap', observers=1,
     distance_m='1.6', bearing_deg='45',
   ),
+  'hover-both': _sweep(
+    'hover-both', 1, '--performer_hover=mocap', '--observer_hover=mocap',
+    observers=1, distance_m='1.6', bearing_deg='0',
+  ),
   'hover-observers': _sweep(
     'hover-observers', 1, '--observer_hover=mocap', observers=1,
     distance_m='1.3', bearing_deg='0',
