@@ -30,6 +30,7 @@ COMMANDS = {
   'boundary': 'Show that receivers use their own images and nothing else.',
   'bench_video': 'Time a run with and without its video and report.',
   'claims': 'Fly a part of every table again and compare with the documents.',
+  'completion': 'Print what lets a shell complete commands and flags.',
   'doctor': 'Check that this machine can run the tasks, and say what to mend.',
 }
 
