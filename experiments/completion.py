@@ -17,6 +17,7 @@ import sys
 
 from absl import flags
 
+from waggle_tasks import errors
 from waggle_tasks.experiments import launch
 from waggle_tasks.experiments import main as commands
 from waggle_tasks.experiments.machine import cores
@@ -26,11 +27,15 @@ ARGUMENTS = 'SHELL'
 _FLAG = re.compile(r'^  --(\[no\])?(\w+)(=?)', re.MULTILINE)
 
 
+class ShellError(errors.WaggleError):
+  """A shell that nothing is known of."""
+
+
 def main(argv: Sequence[str]) -> int:
   """Prints the script and returns the exit status."""
   if len(argv) != 2:
     raise flags.Error(f'takes one shell, of {[*_SHELLS]}: got {argv[1:]}.')
-  checks.choice('shell', argv[1], [*_SHELLS], flags.Error)
+  checks.choice('shell', argv[1], [*_SHELLS], ShellError)
   with futures.ThreadPoolExecutor(len(cores.usable())) as pool:
     found = [*pool.map(flags_of, commands.COMMANDS)]
   print(script(argv[1], dict(zip(commands.COMMANDS, found, strict=True))))
