@@ -63,6 +63,9 @@ class Differencing(group.Group):
     slack_px: How far pictures of a camera that sways may be out of place once
       they are aligned...
     rest_px: ...and how far a target may sway before it has ever moved.
+    follow_s: Over how long pictures of such a camera are averaged, after which
+      the background follows them...
+    follow_px: ...where it has moved by no more than this meanwhile.
     speed_s: Over how long speed is measured; longer in noise and while swaying.
     speed_noise: Up to this it is none, in grey levels.
     gate_widths: Half the side of the square around the target in which it is
@@ -97,6 +100,8 @@ class Differencing(group.Group):
   focal_px: float = group.number(camera.Camera.focal_px, 1, 1e5)
   slack_px: float = group.number(1.0, 0, 64)
   rest_px: float = 16.0
+  follow_s: float = group.number(0.4, 0.04, 60)
+  follow_px: int = group.number(3, 0, 64)
   speed_s: float = group.number(0.4, 0.04, 60)
   speed_noise: float = group.number(4.0, 0, 255)
   gate_widths: float = 0.9

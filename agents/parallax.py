@@ -6,15 +6,14 @@ the background follows, a little at a time: what is seen a few pixels from where
 it was is taken into it. The target, and whatever else comes, is not.
 """
 
+import math
+
 import cv2
 import numpy as np
 
 from waggle_tasks.agents import config as config_lib
 from waggle_tasks.agents import difference, elapsed
 
-_EVERY_S = 0.4  # Pictures are averaged for so long...
-_NEAR_PX = 3  # ...and what is behind moves by no more meanwhile.
-_LEVELS = 6  # What it changes besides, in grey levels.
 _Gate = tuple[slice, slice]
 
 
@@ -24,6 +23,7 @@ class Parallax:
   def __init__(self, config: config_lib.Differencing) -> None:
     self._config = config
     self._gates: list[_Gate] = []
+    self._last_s = -math.inf
 
   def step(
     self,
@@ -43,25 +43,28 @@ class Parallax:
     Returns:
       Whether it has been changed.
     """
+    config = self._config
+    if time_s - self._last_s > config.max_gap_s:
+      self._gates = []  # What was seen before is of another way.
+    self._last_s = time_s
     if not self._gates:
       self._since_s, self._sum = time_s, np.zeros(grey.shape, np.float32)
     cv2.accumulate(grey, self._sum)
     self._gates.append(gate)
-    if not elapsed.lasted(self._since_s, time_s, _EVERY_S):
+    if not elapsed.lasted(self._since_s, time_s, config.follow_s):
       return False
     mean = cv2.convertScaleAbs(self._sum, alpha=1 / len(self._gates))
-    known = _known(mean, background.grey)
+    known = self._known(mean, background.grey)
     for each in self._gates:
       known[each] = 0
     cv2.copyTo(mean, known, background.grey)
-    background.loosen(self._config.slack_px)
+    background.loosen(config.slack_px)
     self._gates = []
     return True
 
-
-def _known(grey: np.ndarray, behind: np.ndarray) -> np.ndarray:
-  """Where a picture is as it was, but for a small shift: (H, W) uint8."""
-  near = np.ones((2 * _NEAR_PX + 1,) * 2, np.uint8)
-  low = cv2.subtract(cv2.erode(behind, near), _LEVELS)
-  high = cv2.add(cv2.dilate(behind, near), _LEVELS)
-  return cv2.inRange(grey, low, high)
+  def _known(self, grey: np.ndarray, behind: np.ndarray) -> np.ndarray:
+    """Where a picture is as it was, but for a small shift: (H, W) uint8."""
+    near = np.ones((2 * self._config.follow_px + 1,) * 2, np.uint8)
+    low = cv2.subtract(cv2.erode(behind, near), self._config.min_levels)
+    high = cv2.add(cv2.dilate(behind, near), self._config.min_levels)
+    return cv2.inRange(grey, low, high)
