@@ -47,9 +47,9 @@ def _hidden(receiver: str) -> kinds.Claim:
   )  # fmt: skip
 
 
-def _disturbed(table: int, *flags: str, **grid: str) -> kinds.Claim:
+def _disturbed(*flags: str, **grid: str) -> kinds.Claim:
   values: dict[str, Any] = grid  # None of the names of other arguments.
-  return _sweep('disturbances', 2, *flags, table=table, **values)
+  return _sweep('disturbances', 1, *flags, how=kinds.PART, **values)
 
 
 _SWAY = '--observer_drift_m=0.002', '--observer_yaw_drift_deg=0.1'
@@ -97,7 +97,9 @@ CLAIMS = {
   'sway-noise': _sweep(
     'sway', 1, *_SWAY, observers=2, how=kinds.PART, noise_sigma='10'
   ),
-  'sway-dancer': _sweep('sway', 2, table=2, performer_drift_m='0.002'),
+  'sway-dancer': _sweep(
+    'sway', 1, how=kinds.PART, performer_drift_m='0.002'
+  ),
   'hover': kinds.Claim('hover', kinds.TEXT, ('drift',)),
   'crossings': kinds.Claim(
     'crossings', kinds.UNCHECKED, detail='a thousand crossings take 13 minutes'
@@ -129,23 +131,23 @@ CLAIMS = {
     'clutter', 1, '--floor=clutter', *_SWAY, observers=2, how=kinds.PART,
     walls='clutter',
   ),
-  'blackout': _disturbed(0, '--blackout_length_s=2', blackout_s='60'),
-  'brightness': _disturbed(1, '--shadows', brightness='1.5'),
-  'bystanders': _disturbed(2, bystanders='2'),
-  'dropped': _disturbed(3, dropped_share='0.3'),
-  'exposure': _disturbed(4, exposure_s='0.04'),
-  'flicker': _disturbed(5, flicker_share='0.2'),
-  'freeze': _disturbed(6, '--freeze_length_s=6', freeze_s='93'),
-  'jitter': _disturbed(7, jitter_m='0.03'),
-  'late': _disturbed(8, late_frames='25'),
-  'occluder': _disturbed(9, occluder_every_s='20'),
+  'blackout': _disturbed('--blackout_length_s=2', blackout_s='60'),
+  'brightness': _disturbed('--shadows', brightness='1.5'),
+  'bystanders': _disturbed(bystanders='2'),
+  'dropped': _disturbed(dropped_share='0.3'),
+  'exposure': _disturbed(exposure_s='0.04'),
+  'flicker': _disturbed(flicker_share='0.2'),
+  'freeze': _disturbed('--freeze_length_s=6', freeze_s='93'),
+  'jitter': _disturbed(jitter_m='0.03'),
+  'late': _disturbed(late_frames='25'),
+  'occluder': _disturbed(occluder_every_s='20'),
   'blackout-part': _disturbed(
-    10, '--blackout_length_s=2', '--blackout_share=0.4', blackout_s='30'
+    '--blackout_length_s=2', '--blackout_share=0.4', blackout_s='30'
   ),
-  'photons': _disturbed(11, photons='100'),
-  'repeated': _disturbed(12, repeated_share='0.3'),
-  'step': _disturbed(13, '--step_s=40', step_gain='2'),
-  'sun': _disturbed(14, sun='moving'),
+  'photons': _disturbed(photons='100'),
+  'repeated': _disturbed(repeated_share='0.3'),
+  'step': _disturbed('--step_s=40', step_gain='2'),
+  'sun': _disturbed(sun='moving'),
   'decoys': _sweep('decoys', 1, how=kinds.PART, **_DECOYS),
   'decoys-wide': _sweep(
     'decoys-wide', 1, '--distance_m=1.0', '--half_span_deg=75', how=kinds.PART,
