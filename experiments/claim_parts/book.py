@@ -131,7 +131,9 @@ CLAIMS = {
     'clutter', 1, '--floor=clutter', *_SWAY, observers=2, how=kinds.PART,
     walls='clutter',
   ),
-  'blackout': _disturbed('--blackout_length_s=2', blackout_s='60'),
+  'blackout': _sweep(
+    'disturbances', 2, '--blackout_length_s=2', table=0, blackout_s='60'
+  ),
   'brightness': _disturbed('--shadows', brightness='1.5'),
   'bystanders': _disturbed(bystanders='2'),
   'dropped': _disturbed(dropped_share='0.3'),
@@ -141,8 +143,9 @@ CLAIMS = {
   'jitter': _disturbed(jitter_m='0.03'),
   'late': _disturbed(late_frames='25'),
   'occluder': _disturbed(occluder_every_s='20'),
-  'blackout-part': _disturbed(
-    '--blackout_length_s=2', '--blackout_share=0.4', blackout_s='30'
+  'blackout-part': _sweep(
+    'disturbances', 2, '--blackout_length_s=2', '--blackout_share=0.4',
+    table=10, blackout_s='30',
   ),
   'photons': _disturbed(photons='100'),
   'repeated': _disturbed(repeated_share='0.3'),
