@@ -69,6 +69,7 @@ MEASURED = {
     },
     {'ideal': [0.0002], 'rotors': [0.0005]},
   ),
+  'learners': learners.Learning({'no pictures': [0.001], 'pictures': [0.003]}),
   'observers': [
     loops.Loop(count, 100, count * cost_s, 1.0, 1.0)
     for cost_s in (0.1, 0.2)
@@ -95,6 +96,7 @@ def test_ratios_are_medians_of_what_was_measured_side_by_side() -> None:
       },
       'simulated time / time on one core, rotors': 8.0,
       'share of a broadcast that rotors add': 0.06,
+      'steps of a learner, no pictures / pictures': 3.0,
       'cost of a receiver and frame, 16 observers / 2': 1.0,
       'throughput, 2 processes / 1': 2.0,
     }
@@ -113,6 +115,7 @@ def test_a_report_tells_the_ratios_before_anything_else() -> None:
     'rendering 300 60%',
     'view_bank 150 200',
     'everything 10.00 10.0',
+    'no pictures 1,000',
     'broadcast 3 261',
   } <= {' '.join(line.split()) for line in lines}
   assert max(map(len, lines)) <= 80
@@ -167,13 +170,6 @@ def test_learners_are_measured_where_what_they_take_is_installed(
     sections.BenchError, match=r"pip install 'waggle-tasks\[rl"
   ):
     sections.chosen(['learners'])
-
-
-def test_steps_of_learners_are_set_beside_those_with_pictures() -> None:
-  found = learners.Learning({'no pictures': [0.5, 0.1], 'pictures': [1.0, 0.4]})
-  text = tables.text({'learners': found})
-  assert 'steps of a learner, no pictures / pictures  3.00' in text
-  assert text.splitlines()[-2].split() == ['no', 'pictures', '3']
 
 
 def test_a_length_that_is_asked_for_holds_for_every_broadcast() -> None:
