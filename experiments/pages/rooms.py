@@ -16,8 +16,8 @@ COMMANDS, SCENARIOS = 'commands', 'scenarios'
 COMMON, SETTINGS = 'common', 'settings'
 ROOMS = (
   COMMON, 'protocol', SETTINGS, 'agents', 'entities', 'arenas', 'tasks',
-  SCENARIOS, 'machine', 'record', 'episodes', 'studies', 'results', 'pages',
-  'video', 'bench_parts', 'claim_parts', 'flags', COMMANDS,
+  SCENARIOS, 'rl', 'machine', 'record', 'episodes', 'studies', 'results',
+  'pages', 'video', 'bench_parts', 'claim_parts', 'flags', COMMANDS,
 )  # fmt: skip
 # Modules beside the rooms.
 _BESIDE = {
