@@ -17,7 +17,8 @@ TEST = (
   'setuptools>=77',
   *CLUSTER, *ANALYSIS, *VIDEO, *RL,
 )  # fmt: skip
-DEV = (*TEST, 'ruff>=0.14', 'mypy>=2.4', 'build>=1')
+DOCS = ('sphinx>=8.2', 'furo>=2025.7', 'myst-nb>=1.3')
+DEV = (*TEST, *DOCS, 'ruff>=0.14', 'mypy>=2.4', 'build>=1')
 
 
 def version() -> str:
@@ -105,6 +106,7 @@ setuptools.setup(
     'analysis': ANALYSIS,
     'rl': RL,
     'test': TEST,
+    'docs': DOCS,
     'dev': DEV,
   },
   entry_points={
