@@ -15,7 +15,6 @@ import sys
 from absl import flags
 
 from waggle_tasks import scenario
-from waggle_tasks.agents import receivers
 from waggle_tasks.experiments import launch
 from waggle_tasks.experiments.flags import (
   config_flag,
@@ -27,7 +26,6 @@ from waggle_tasks.experiments.flags import (
 from waggle_tasks.experiments.machine import table
 from waggle_tasks.experiments.pages import document, run_page
 from waggle_tasks.experiments.record import (
-  archive,
   episode,
   folders,
   frames,
@@ -37,7 +35,7 @@ from waggle_tasks.experiments.record import (
   verdicts,
   writer,
 )
-from waggle_tasks.experiments.studies import job_progress
+from waggle_tasks.experiments.studies import job_progress, live
 
 scenario_flags.define()
 recording_flags.define()
@@ -49,11 +47,14 @@ _CONFIG = config_flag.define(
 _OUTPUT = flags.DEFINE_string(
   'output', None, 'Run folder to make; unset, the next runs/broadcast-N.'
 )
+_LIVE = flags.DEFINE_boolean(
+  'live', False, 'Whether to show what each observer has read, as it flies.'
+)
 
 
 def main(argv: Sequence[str]) -> int:
   """Runs the scenario of the flags and returns the exit status."""
-  scene, receiver_name = _chosen()
+  scene, receiver_name = config_flag.chosen(_CONFIG, _RECEIVER)
   foresight.tell([scene], receiver_name)
   # Imported here: help needs no simulator.
   from waggle_tasks.experiments.episodes import evaluator, outside
@@ -82,19 +83,6 @@ def main(argv: Sequence[str]) -> int:
   return 0 if verdict.passed else 1
 
 
-def _chosen() -> tuple[scenario.Scenario, str]:
-  """The scenario and the receiver of the flags, or of a run and the flags."""
-  if _CONFIG.value is None:
-    scene = scenario_flags.read()
-    return scene, receiver_flag.chosen(_RECEIVER, [scene])
-  path = config_flag.path(_CONFIG.value)
-  known = archive.read_config(path).receiver
-  scene = scenario_flags.read(archive.read_scenario(path))
-  name = _RECEIVER.value if _RECEIVER.present else known
-  receivers.make(name, scene.agreement)
-  return scene, name
-
-
 @contextlib.contextmanager
 def _folder() -> Iterator[tuple[pathlib.Path, pathlib.Path]]:
   """A draft of the run folder of the flags, and that folder."""
@@ -117,16 +105,20 @@ def _roll(
 
   frame = job_progress.ticks(scene.agreement.frame_s)
   form = '{desc}: {percentage:3.0f}%|{bar}| {n:.0f}/{total:.0f} s'
-  with job_progress.seconds_bar(
-    scene.episode_s, desc='broadcast',
-    bar_format=form + ' simulated [{elapsed} < {remaining}]',
-  ) as bar:  # fmt: skip
+  with (
+    job_progress.seconds_bar(
+      scene.episode_s,
+      desc='broadcast',
+      bar_format=form + ' simulated [{elapsed} < {remaining}]',
+    ) as bar,
+    live.onlookers(scene, _LIVE.value) as lines,
+  ):
 
     def watch(step: episode.Step) -> None:
       if not step.timestep.first():
         job_progress.advance(bar, frame)
 
-    return rollout_lib.run(scene, receiver_name, [*onlookers, watch])
+    return rollout_lib.run(scene, receiver_name, [*onlookers, *lines, watch])
 
 
 def report(scene: scenario.Scenario, verdict: verdicts.Verdict) -> str:
