@@ -26,6 +26,7 @@ COMMANDS = {
   'link': 'Compare languages, codes and repetition by what they deliver.',
   'drift': 'Show how vehicles hover, beside what was measured.',
   'languages': 'Show how long, how quick and how far apart languages are.',
+  'learn': 'Let pairs learn a language of their own, and draw how.',
   'sensitivity': 'Move each open choice both ways and show what changes.',
   'ablate': 'Take parts out of the receivers and show what they are good for.',
   'boundary': 'Show that receivers use their own images and nothing else.',

@@ -259,6 +259,10 @@ CLAIMS = {
   'learners': kinds.Claim(
     'learners', kinds.UNCHECKED, detail='times, which differ between runs'
   ),
+  'dance': kinds.Claim(
+    'dance', kinds.UNCHECKED,
+    detail='what is learned differs a little between kinds of processors',
+  ),
   'pictures': kinds.Claim(
     'pictures', kinds.UNCHECKED,
     detail='a test compares pictures with every run',

@@ -4,7 +4,16 @@ The quintic of Flash and Hogan (1985), doi:10.1523/JNEUROSCI.05-07-01688.1985,
 equation 5: position, velocity and acceleration are zero-ended and smooth.
 """
 
+from typing import TypeVar
+
 import numpy as np
+
+_Share = TypeVar('_Share', float, np.ndarray)
+
+
+def fraction(s: _Share) -> _Share:
+  """How far along the way at a share of the time, or at many, 0 to 1."""
+  return s**3 * (10 - 15 * s + 6 * s**2)
 
 
 def progress(elapsed_s: float, duration_s: float) -> tuple[float, float, float]:
@@ -19,10 +28,9 @@ def progress(elapsed_s: float, duration_s: float) -> tuple[float, float, float]:
     1/s^2.
   """
   s = min(max(elapsed_s / duration_s, 0.0), 1.0)
-  fraction = s**3 * (10 - 15 * s + 6 * s**2)
   rate = 30 * s**2 * (1 - s) ** 2 / duration_s
   second_rate = 60 * s * (1 - s) * (1 - 2 * s) / duration_s**2
-  return fraction, rate, second_rate
+  return fraction(s), rate, second_rate
 
 
 def between(

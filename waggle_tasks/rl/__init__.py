@@ -20,14 +20,23 @@ needs.check()  # Before anything that imports them.
 from waggle_tasks.rl import ids  # noqa: E402
 
 if TYPE_CHECKING:
+  from waggle_tasks.rl.dance import Dance
   from waggle_tasks.rl.parallel import ParallelBroadcast, parallel_env
   from waggle_tasks.rl.read import Read
   from waggle_tasks.rl.single import Broadcast, gym_env
 
-__all__ = ['Broadcast', 'ParallelBroadcast', 'Read', 'gym_env', 'parallel_env']
+__all__ = [
+  'Broadcast',
+  'Dance',
+  'ParallelBroadcast',
+  'Read',
+  'gym_env',
+  'parallel_env',
+]
 
 _HOMES = {
   'Broadcast': 'single',
+  'Dance': 'dance',
   'ParallelBroadcast': 'parallel',
   'Read': 'read',
   'gym_env': 'single',
