@@ -152,7 +152,8 @@ def _blocks(name: str, lines: Sequence[str]) -> list[tuple[str | None, Block]]:
     if not begun and (mark := _MARK.match(line)):
       claim = mark[1]
     elif not begun and line.startswith('```'):
-      begun, shell = number, line[3:] in _SHELL
+      # What the site makes, in braces, is none of it either.
+      begun, shell = number, line[3:] in _SHELL or line[3:4] == '{'
     elif line == '```':
       if not shell:
         body = tuple(lines[begun : number - 1])
