@@ -6,8 +6,8 @@ import math
 
 import numpy as np
 
-from waggle_tasks.agents import elapsed, klt, pace
 from waggle_tasks.agents import config as config_lib
+from waggle_tasks.agents import elapsed, klt, pace
 
 # A rest: places are off their middle by so much, root mean square, before the
 # paper's camera...

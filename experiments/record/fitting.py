@@ -8,6 +8,22 @@ JOINT = 'joint'
 # Of a pause: some of it passes until a motion is seen to be over, and it may be
 # shorter than was agreed.
 _SHARE = 0.4
+# What a sum of events shows: nothing of a target at rest, and one that looks
+# another way wherever it is.
+_OF_EVENTS = {
+  JOINT: (
+    'min_contrast=0,lost_share=0.1,most_share=6,most_wider=0,most_higher=0'
+  ),
+  'view_bank': 'min_contrast=0',
+}
+
+
+def of_events(agreement: agreement_lib.Agreement) -> str:
+  """The receiver for events, see `usual`."""
+  name = usual(agreement, 'view_bank')
+  stem = name.partition(':')[0]
+  comma = ',' if '=' in name else ':'
+  return f'{name}{comma}{_OF_EVENTS[stem]}'
 
 
 def fitted(name: str, agreement: agreement_lib.Agreement) -> str:

@@ -121,14 +121,12 @@ def read(
   return {name: tuple(events) for name, events in found.items()}
 
 
-def count(
-  flown: scenario.Scenario, events: Sequence[receiver.Event]
-) -> Count:
+def count(flown: scenario.Scenario, events: Sequence[receiver.Event]) -> Count:
   """Compares events with what was flown.
 
   A motion counts as read where its name is the only one between its middle and
-  that of the next; so does a rest. A receiver that reads frames as a whole names
-  all motions of a frame at its end, and no rests.
+  that of the next; so does a rest. A receiver that reads frames as a whole
+  names all motions of a frame at its end, and no rests.
   """
   slots = flown.performance.schedule.slots
   said = [each.message.bits for each in events if each.message]
