@@ -104,6 +104,15 @@ def test_what_is_no_place_is_refused(
     work.step(place, time_s)
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize('view', ['upside down', 'upside down and mirrored'])
+def test_no_payload_upside_down_is_another_one(view: str) -> None:
+  for value in range(64):
+    dance = scene('swift', f'{value:06b}')
+    rows = kit.seen(dance.agreement, dance.performance, view=view)
+    assert kit.said(kit.read('joint', dance.agreement, rows)) is None
+
+
 # Up and down looks the same from behind; all else is mirrored there.
 SAME_FROM_BEHIND = 'swift', 'rapid'
 

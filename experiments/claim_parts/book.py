@@ -252,6 +252,9 @@ CLAIMS = {
   'boundary': kinds.Claim(
     'boundary', kinds.TEXT, ('boundary', '--half_span_deg=45')
   ),
+  'symbols': kinds.Claim(
+    'symbols', kinds.UNCHECKED, detail='nine films take minutes'
+  ),
   'timings': kinds.Claim(
     'timings', kinds.UNCHECKED,
     detail='times and memory, which differ between runs',

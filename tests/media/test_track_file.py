@@ -138,13 +138,25 @@ def test_the_command_reads_tracks_and_says_why_it_does_not(
   assert cut.returncode == 1
   assert 'the track begins in motion: no rest to learn' in cut.stdout
   assert cut.stdout.endswith('joint: no message\n')
-  for flag, said in (
-    ('--roi=0,0,99,99', '`roi` is about pictures'),
-    ('--receiver=klt', 'for tracks'),
-    ('--config=x', '`agreement` and `config` say the same'),
-  ):
-    child = waggle('decode', track, '--agreement=swift', flag)
-    assert (child.returncode, said in child.stderr) == (2, True), child.stderr
+
+
+BAD = {
+  '--roi=0,0,99,99': '`roi` is about pictures',
+  '--fps=25': '`fps` is about pictures',
+  '--receiver=klt': 'for tracks',
+  '--config=x': '`agreement` and `config` say the same',
+  '--camera=0': '`camera` takes no FOLDER|RECORDING beside it',
+}
+
+
+def test_flags_that_say_nothing_of_a_track_are_refused(
+  ask: Callable[..., list], path: pathlib.Path
+) -> None:
+  path.write_text('0,1,2\n1,1,2\n')
+  lines = [['decode', path.name, '--agreement=swift', flag] for flag in BAD]
+  answers = ask(lines, path.parent)
+  for (status, said, _), expected in zip(answers, BAD.values(), strict=True):
+    assert (status, expected in said) == (2, True), said
 
 
 def test_the_command_reads_mocom_with_nulls_that_its_gaps_hold(
