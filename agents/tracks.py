@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 import dataclasses
 import math
+from typing import Any
 
 import numpy as np
 
@@ -133,11 +134,14 @@ def make(
     ReceiverError: as `receivers.make` does, and if it follows pixels.
   """
   made, config = receivers.configured(name)
+  work: Any = None  # A `receiver.Receiver`.
   if made is joint_receiver.JointReceiver:
     if isinstance(config, joint_config.Config):
-      return JointTracks(agreement, config)
+      work = JointTracks(agreement, config)
   elif made in _staged(READERS) and isinstance(config, config_lib.Config):
-    return StagedTracks(agreement, config)
+    work = StagedTracks(agreement, config)
+  if work is not None:
+    return work
   raise group.ReceiverError(
     f'`receiver` must be one of {[*READERS]} for tracks, as others follow'
     f' pixels: got {name!r}'

@@ -1,6 +1,5 @@
 """A tracker and the segmenter that goes with it: images in, motions out."""
 
-from collections.abc import Sequence
 from typing import Protocol
 
 import numpy as np
@@ -108,7 +107,7 @@ class Tracker(Protocol):
     """(2,) where it rests, or None."""
     ...
 
-  def step(self, image: np.ndarray, time_s: float) -> Sequence[klt.Track]:
+  def step(self, image: np.ndarray, time_s: float) -> list[klt.Track]:
     """Takes an image; see `absolute.AbsoluteTracker`."""
     ...
 

@@ -92,10 +92,10 @@ def part() -> recordings.RecordingPart:
   # Their counts are checked.
   roi: Any = _numbers('roi', 4, int)
   anchor: Any = _numbers('anchor', 2, float)
-  start_s, end_s, speed = (
-    flags.FLAGS[name].value for name in ('start', 'end', 'speed')
+  values: dict[str, Any] = flags.FLAGS.flag_values_dict()
+  return recordings.RecordingPart(
+    values['start'], values['end'], roi, anchor, values['speed']
   )
-  return recordings.RecordingPart(start_s, end_s, roi, anchor, speed)
 
 
 def fps() -> float | None:

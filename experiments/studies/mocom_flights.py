@@ -155,6 +155,7 @@ def _between(
     [e.symbol for e in events if begin_s <= e.time_s < end_s]
     for begin_s, end_s in itertools.pairwise(edges_s)
   ]
-  rests = [[s for s in part if s is Symbol.NULL] for part in parts]
-  motions = [[s for s in part if s is not Symbol.NULL] for part in parts[1:]]
+  null = Symbol.NULL
+  rests = [[s for s in part if s == null] for part in parts]
+  motions = [[s for s in part if s != null] for part in parts[1:]]
   return rests, motions
