@@ -11,11 +11,13 @@ FOLDERS = ('entities', 'arenas', 'agents', 'experiments')
 VIDEO = ('av>=17.1',)
 CLUSTER = ('distributed>=2025.1',)
 ANALYSIS = ('matplotlib>=3.9',)
+EVENTS = ('aedat>=2.3',)
 RL = ('gymnasium>=1', 'pettingzoo>=1.25')
 TEST = (
   'pytest>=8', 'pytest-timeout>=2.2', 'pytest-xdist>=3.1', 'hypothesis>=6.16',
   'setuptools>=77',
-  *CLUSTER, *ANALYSIS, *VIDEO, *RL,
+  *CLUSTER, *ANALYSIS, *VIDEO, *RL, *EVENTS,
+  'dv-processing>=2',  # It writes what tests read.
 )  # fmt: skip
 DOCS = ('sphinx>=8.2', 'furo>=2025.7', 'myst-nb>=1.3')
 DEV = (*TEST, *DOCS, 'ruff>=0.14', 'mypy>=2.4', 'build>=1')
@@ -105,6 +107,7 @@ setuptools.setup(
     'cluster': CLUSTER,
     'analysis': ANALYSIS,
     'rl': RL,
+    'events': EVENTS,
     'test': TEST,
     'docs': DOCS,
     'dev': DEV,

@@ -1,6 +1,5 @@
 """Tells where a target is, in every image on its own: nothing adds up."""
 
-from collections import deque
 import math
 
 import cv2
@@ -8,7 +7,7 @@ import numpy as np
 
 from waggle_tasks.agents import blobs as blobs_lib
 from waggle_tasks.agents import config as config_lib
-from waggle_tasks.agents import difference, hover, klt, parallax
+from waggle_tasks.agents import difference, hover, klt, pace, parallax
 from waggle_tasks.agents import ghost as ghost_lib
 
 _REPAIRS = 25  # Images that the background behind the hover is made from.
@@ -17,7 +16,6 @@ _MIN_SHARE, _MAX_SHARE = 0.3, 3.0
 _MOST_SIDE = 2.0  # Its sides are at most so many times longer or shorter.
 _PART_SHARE = 0.05  # Less of a target is no other one.
 _COVERED = 0.5  # Of a gate: what changes so much of it hides the target.
-_Row = tuple[float, ...]  # A time and numbers.
 
 
 class AbsoluteTracker:
@@ -104,8 +102,8 @@ class Follower:
     self._repairs = 1
     self._centre_px = departure.ghost.anchor_px
     noisy = self._detector.noise > config.speed_noise
-    self._speed_s = config.speed_s * (1 + noisy + (departure.slack_px > 0))
-    self._recent: deque[_Row] = deque()  # Time, x and y.
+    more = 1 + noisy + (departure.slack_px > 0)
+    self._pace = pace.Pace(config.speed_s * more)
     self._seen_s = math.inf
     self._parallax = parallax.Parallax(config)
 
@@ -149,9 +147,9 @@ class Follower:
     if self._alignment.sways:
       self._renew(image, gate, time_s)
     self._centre_px, self._seen_s = centre_px, time_s
-    _keep(self._recent, (time_s, *centre_px), self._speed_s)
+    speed_px_s = self._pace.step((time_s, *centre_px))
     return klt.Track(
-      time_s, centre_px, _speed(self._recent), support, min(share, 1.0), True,
+      time_s, centre_px, speed_px_s, support, min(share, 1.0), True,
       width_px=self._ghost.width_px,
     )  # fmt: skip
 
@@ -165,7 +163,7 @@ class Follower:
       quality: What share of it was seen.
       outside: Whether it may be out of the picture.
     """
-    self._recent.clear()
+    self._pace.forget()
     return klt.Track(time_s, self._centre_px, 0.0, 0, quality, False, outside)
 
   def _gate(self) -> tuple[slice, slice]:
@@ -245,20 +243,3 @@ class Follower:
     if self._parallax.step(grey, gate, time_s, known):
       known.variance = self._detector.background(known.grey).variance
       self._alignment.renew(known.grey)
-
-
-def _keep(rows: deque[_Row], row: _Row, duration_s: float) -> None:
-  """Adds a row, and drops those that are older by a duration."""
-  rows.append(row)
-  while row[0] - rows[0][0] > duration_s - 1e-6:
-    rows.popleft()
-
-
-def _speed(recent: deque[_Row]) -> float:
-  """Speed of the straight line that fits positions best, per second."""
-  if len(recent) < 2:
-    return 0.0
-  table = np.array(recent)
-  table -= table.mean(axis=0)
-  slope = table[:, 0] @ table[:, 1:] / (table[:, 0] @ table[:, 0])
-  return math.hypot(*slope)

@@ -24,6 +24,7 @@ from waggle_tasks.agents import (
   slots,
   soft,
   starts,
+  watchers,
 )
 from waggle_tasks.protocol import agreement as agreement_lib
 from waggle_tasks.protocol import frame, packets, payload
@@ -105,7 +106,7 @@ class JointReceiver:
     # A clock may be slow, and an image late.
     self._late_s = agreement.tolerance.clock_rate * self._length_s + _LATE_S
     self._collected = packets.Collector(agreement.packets or packets.Packets())
-    self._tracker = absolute.AbsoluteTracker(config.tracking)
+    self._tracker: watchers.Tracker = absolute.AbsoluteTracker(config.tracking)
     self._images = inputs.Images()
     self._forget()
     self.track: klt.Track | None = None
@@ -148,6 +149,12 @@ class JointReceiver:
         has changed.
     """
     self._images.check(image, time_s)
+    return self._follow(image, time_s)
+
+  def _follow(
+    self, image: np.ndarray, time_s: float
+  ) -> tuple[receiver.Event, ...]:
+    """What an image confirms that may be one of this stream."""
     tracks = self._tracker.step(image, time_s)
     self.track = tracks[-1]
     ghost = self._tracker.ghost

@@ -7,6 +7,8 @@ import numpy as np
 
 from waggle_tasks.agents import slots
 
+_SAME_M = 1e-6  # END of gestures begins where it ends, but for rounding.
+
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class Reading:
@@ -64,7 +66,8 @@ def judge(
   middle_m = resting_s @ ended.places_m / max(resting_s.sum(), 1e-9)
   ways_m = shapes.ends[view][:, 0] - shapes.ends[view][:, -1]
   level_m = float(np.hypot(*ways_m.T).min())
-  rest = float(np.hypot(*middle_m * shapes.tell)) / level_m if level_m else 0.0
+  aside_m = float(np.hypot(*middle_m * shapes.tell))
+  rest = aside_m / level_m if level_m > _SAME_M else 0.0
   path = shapes.ends[view, states[-1]]
   stay = float(((path - path[:1]) ** 2).sum(axis=-1).mean()) * shapes.end_s
   stay += float(((path[-1] - path[0]) ** 2).sum()) * frame.after_s

@@ -165,7 +165,7 @@ class StagedReceiver:
     config = group.zoomed(config or self.DEFAULT, agreement.camera.zoom)
     clock = agreement.clock if config.framing.clock else None
     least_s = 0.0 if clock is None else clock.least_s
-    self._watcher = watchers.make(config, least_s)
+    self._watcher = self._watch(config, least_s)
     templates = views.templates(agreement, config.views)
     self._recogniser = recogniser.Recogniser(config.recognition, templates)
     blind_s = 0.0
@@ -183,6 +183,12 @@ class StagedReceiver:
     self._where: tuple[float | None, float | None] = None, None
     self.track: klt.Track | None = None
     self.segment: segmenter.Segment | None = None
+
+  def _watch(
+    self, config: config_lib.Config, least_s: float
+  ) -> watchers.Watcher:
+    """What follows the target, see `watchers.make`."""
+    return watchers.make(config, least_s)
 
   @classmethod
   def describe(
@@ -215,9 +221,13 @@ class StagedReceiver:
         has changed.
     """
     self._images.check(image, time_s)
+    self._liveness.step(image, time_s)
+    return self._follow(image, time_s)
+
+  def _follow(self, image: np.ndarray, time_s: float) -> tuple[Event, ...]:
+    """What an image confirms that may be one of this stream."""
     watcher = self._watcher
     self.track, self.segment = watcher.step(image, time_s)
-    self._liveness.step(image, time_s)
     if watcher.gave_up:
       self._sight.give_up()
     self._sight.step(self.track)

@@ -80,17 +80,49 @@ class FlowWatcher:
     return track, self._segmenter.step(track)
 
 
+class Home(Protocol):
+  """Where a target rested before it moved."""
+
+  @property
+  def anchor_px(self) -> np.ndarray:
+    """(2,) its centre."""
+    ...
+
+  @property
+  def width_px(self) -> float:
+    """Its width."""
+    ...
+
+
+class Tracker(Protocol):
+  """Tells where a target is, once it is known where it rested."""
+
+  @property
+  def ghost(self) -> Home | None:
+    """Where it rested; None as long as that is not known."""
+    ...
+
+  @property
+  def anchor_px(self) -> np.ndarray | None:
+    """(2,) where it rests, or None."""
+    ...
+
+  def step(self, image: np.ndarray, time_s: float) -> list[klt.Track]:
+    """Takes an image; see `absolute.AbsoluteTracker`."""
+    ...
+
+
 class AbsoluteWatcher:
   """Absolute positions, cut where the target leaves its rest and returns."""
 
   def __init__(
     self,
-    tracking: config_lib.Differencing,
+    tracker: Tracker,
     motion: config_lib.Excursion,
     wanders: wandering.Wandering,
     least_s: float,
   ) -> None:
-    self._tracker = absolute.AbsoluteTracker(tracking)
+    self._tracker = tracker
     self._motion, self._wanders, self._least_s = motion, wanders, least_s
     self._segmenter: excursion.ExcursionSegmenter | None = None
     self.gave_up = False
@@ -148,7 +180,8 @@ def make(config: config_lib.Config, least_s: float = 0.0) -> Watcher:
       config_lib.Differencing() as tracking,
       config_lib.Excursion() as motion,
     ):
-      return AbsoluteWatcher(tracking, motion, config.wandering, least_s)
+      tracker = absolute.AbsoluteTracker(tracking)
+      return AbsoluteWatcher(tracker, motion, config.wandering, least_s)
     case config_lib.Tracking() as tracking, config_lib.Motion() as motion:
       return FlowWatcher(tracking, motion)
   raise group.ReceiverError(

@@ -16,7 +16,8 @@ from waggle_tasks.experiments.machine import terminal
 COMMANDS = {
   'broadcast': 'Fly one dance and let every observer read and follow it.',
   'view': "Show a dance in MuJoCo's viewer, where there is a display.",
-  'decode': "Read a run's raw captures again, or any video of a dance.",
+  'agreement': 'Print what both sides know, as a file to read recordings by.',
+  'decode': "Read a run's raw captures again, or any recording of a dance.",
   'report': 'Make the page of a run, suite, sweep or link again from its data.',
   'gallery': 'Make the pictures of the documentation.',
   'suite': "Run the paper's evaluation, or your own, beside its results.",
@@ -27,6 +28,7 @@ COMMANDS = {
   'drift': 'Show how vehicles hover, beside what was measured.',
   'languages': 'Show how long, how quick and how far apart languages are.',
   'learn': 'Let pairs learn a language of their own, and draw how.',
+  'symbols': "Fly MoCom's timelines and show which symbols are read.",
   'sensitivity': 'Move each open choice both ways and show what changes.',
   'ablate': 'Take parts out of the receivers and show what they are good for.',
   'boundary': 'Show that receivers use their own images and nothing else.',

@@ -40,7 +40,7 @@ def test_the_command_knows_the_flags_of_all(waggle: Waggle) -> None:
   ('words', 'wanted'),
   [
     (['bro'], ['broadcast']),
-    (['s'], ['sensitivity', 'suite', 'sweep']),
+    (['s'], ['sensitivity', 'suite', 'sweep', 'symbols']),
     (
       ['broadcast', '--distance_'],
       ['--distance_bits=', '--distance_m=', '--distance_unit_m='],

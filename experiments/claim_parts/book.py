@@ -252,6 +252,7 @@ CLAIMS = {
   'boundary': kinds.Claim(
     'boundary', kinds.TEXT, ('boundary', '--half_span_deg=45')
   ),
+  'symbols': kinds.Claim('symbols', kinds.UNCHECKED, detail='takes minutes'),
   'timings': kinds.Claim(
     'timings', kinds.UNCHECKED,
     detail='times and memory, which differ between runs',
@@ -264,8 +265,7 @@ CLAIMS = {
     detail='what is learned differs a little between kinds of processors',
   ),
   'pictures': kinds.Claim(
-    'pictures', kinds.UNCHECKED,
-    detail='a test compares pictures with every run',
+    'pictures', kinds.UNCHECKED, detail='a test compares pictures each run'
   ),
   'event-logs': kinds.Claim(
     'event-logs', kinds.ROWS, ('bench', '--check_events', '--suite=controls')

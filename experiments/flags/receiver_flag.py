@@ -7,8 +7,9 @@ from absl import flags
 
 from waggle_tasks import scenario
 from waggle_tasks.agents import outsiders, receivers
+from waggle_tasks.experiments.record import fitting
 
-JOINT = 'joint'
+JOINT = fitting.JOINT
 _LANGUAGE = f"Unset, {JOINT} where another language than the paper's is spoken."
 
 # Flags defined here belong to the launcher that asks for them.

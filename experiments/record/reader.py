@@ -1,6 +1,6 @@
 """A receiver at work on images that were taken before."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 import json
 import pathlib
 
@@ -29,18 +29,20 @@ class Reader:
     self,
     name: str,
     agreement: agreement_lib.Agreement = agreement_lib.Agreement(),
+    make: Callable[..., receiver.Receiver] = receivers.make,
   ) -> None:
     """Makes a reader.
 
     Args:
-      name: A receiver as `receivers.make` takes it.
+      name: A receiver as `make` takes it.
       agreement: What both sides know.
+      make: Of images, or `tracks.make`, of places.
 
     Raises:
       ReceiverError: if the receiver is not known.
     """
     self.name, self.agreement = name, agreement
-    self.receiver = receivers.make(name, agreement)
+    self.receiver = make(name, agreement)
     self.events: list[receiver.Event] = []
     self.chain = image_chain.Chain()
     self.last_s = np.nan

@@ -13,6 +13,8 @@ import numpy as np
 
 from waggle_tasks.experiments.machine import files
 from waggle_tasks.experiments.video import (
+  event_film,
+  live_camera,
   opencv_film,
   picture_folder,
   recording_part,
@@ -23,7 +25,7 @@ from waggle_tasks.protocol import checks
 MAX_LENGTH_S = 3600.0
 _SLACK_S = 1.0  # A container may announce so much more than it holds.
 # Pictures nearer than this are one: nothing that is danced moves between them.
-_NEAR_S = 0.0095
+NEAR_S = 0.0095
 _MOST_STUCK = 5000  # Pictures in a row without a time of their own.
 
 RecordingPart = recording_part.RecordingPart
@@ -38,14 +40,23 @@ class Recording:
     height: The same.
     length_s: What its container announces, as a hint; NaN when it does not.
     note: What should be said of what was read; empty when it is plain.
+    name: What people call it.
+    live: Whether it is being made while it is read.
   """
 
-  def __init__(self, path: pathlib.Path, fps: float | None = None) -> None:
-    """Opens a file, or a folder of numbered pictures.
+  def __init__(
+    self,
+    path: pathlib.Path,
+    fps: float | None = None,
+    source: sources.Source | None = None,
+  ) -> None:
+    """Opens a film, a file of events, or a folder of pictures.
 
     Args:
       path: The file or folder.
       fps: Pictures a second, where pictures have no times of their own.
+      source: What is open already, as a camera; `path` is then what people
+        call it.
 
     Raises:
       RecordingError: if there is no video in it, one of pictures that are
@@ -55,10 +66,11 @@ class Recording:
       checks.number('fps', fps, 0.01, 1000.0, RecordingError)
     files.check_text(str(path.absolute()), RecordingError)
     self._path = path
-    self._source = _open(path, fps)
+    self._source = source or _open(path, fps)
     self.width, self.height = self._source.width, self._source.height
     self.length_s = self._source.length_s
     self.note = ''
+    self.name, self.live = str(path), isinstance(source, live_camera.LiveCamera)
     self._reached_s = -math.inf  # Time of the last picture, read or not.
 
   def __enter__(self) -> 'Recording':
@@ -104,7 +116,7 @@ class Recording:
 
   def _times(self, part: RecordingPart) -> Iterator[sources.Timed]:
     """The pictures of a part, those left out that are too near to another."""
-    near_s = _NEAR_S / part.speed
+    near_s = NEAR_S / part.speed
     last_s, stuck = -math.inf, 0
     for time_s, picture in self._source.pictures():
       stuck = 0 if time_s > self._reached_s else stuck + 1
@@ -116,8 +128,7 @@ class Recording:
           f'{self._path} is damaged at {time_s:.2f} s: {stuck} pictures there'
           ' have no time of their own'
         )
-      if time_s > part.start_s + MAX_LENGTH_S:
-        self._refuse_length(time_s - part.start_s)
+      check_length(self._path, time_s - part.start_s)
       if time_s >= max(last_s + near_s, part.start_s - 1e-6):
         last_s = time_s
         yield time_s, picture
@@ -125,14 +136,7 @@ class Recording:
   def _check_length(self, part: RecordingPart) -> None:
     """Refuses too long a part before an hour of it is read."""
     end_s = self.length_s if part.end_s is None else part.end_s
-    if end_s - part.start_s > MAX_LENGTH_S:
-      self._refuse_length(end_s - part.start_s)
-
-  def _refuse_length(self, length_s: float) -> None:
-    raise RecordingError(
-      f'{self._path} must be at most {MAX_LENGTH_S:g} s long: got'
-      f' {length_s:.0f} s; choose a part with --start and --end'
-    )
+    check_length(self._path, end_s - part.start_s)
 
   def _check_end(self, part: RecordingPart, count: int) -> None:
     """Refuses a recording that ended too early; notes one that seems to."""
@@ -168,11 +172,26 @@ class Recording:
     self.note = f'{said}.'
 
 
+def check_length(path: pathlib.Path, length_s: float) -> None:
+  """Refuses a part that is too long.
+
+  Raises:
+    RecordingError: naming the limit.
+  """
+  if length_s > MAX_LENGTH_S:  # Nothing is more than what is not announced.
+    raise RecordingError(
+      f'{path} must be at most {MAX_LENGTH_S:g} s long: got'
+      f' {length_s:.0f} s; choose a part with --start and --end'
+    )
+
+
 def _open(path: pathlib.Path, fps: float | None) -> sources.Source:
   """Opens what can be decoded by the best that is installed."""
   if path.is_dir():
     return picture_folder.PictureFolder(path, fps)
   _check_file(path)
+  if path.suffix.lower() == event_film.SUFFIX:
+    return event_film.EventFilm(path, fps)
   try:
     from waggle_tasks.experiments.video import pyav_film
   except ImportError:

@@ -79,7 +79,7 @@ class Source(Protocol):
     ...
 
 
-def check_size(path: pathlib.Path, width: int, height: int) -> None:
+def check_size(path: pathlib.Path | str, width: int, height: int) -> None:
   """Refuses pictures that are too small or too large.
 
   Raises:

@@ -478,7 +478,7 @@ def test_too_long_a_recording_asks_for_a_part(
 @pytest.mark.parametrize(
   ('arguments', 'line'),
   [
-    ([], 'takes one FOLDER|VIDEO: got []'),
+    ([], 'takes one FOLDER|RECORDING: got []'),
     (['{video}', '--roi=1,2,3'], '`roi` must be 4 numbers'),
     (['{video}', '--anchor=a,b'], '`anchor` must be 2 numbers'),
     (['{video}', '--fovy_deg=60', '--focal_px=9'], 'say the same: give one'),
@@ -486,7 +486,7 @@ def test_too_long_a_recording_asks_for_a_part(
     (['{video}', '--receiver=x'], "`receiver` must be one of ['klt"),
     (['{video}', '--annotate=x.gif'], '`video_file` must be a file name'),
     (['{folder}'], 'is not a run folder: it has no config.json'),
-    (['{folder}', '--speed=2'], '`speed` is about a video'),
+    (['{folder}', '--speed=2'], '`speed` is about a recording'),
   ],
 )
 def test_bad_arguments_are_one_line_and_exit_status_2(
