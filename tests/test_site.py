@@ -19,6 +19,18 @@ def run(program: str, namespace: dict[str, object]) -> str:
   return out.getvalue()
 
 
+def test_every_page_can_be_reached_from_the_first_one() -> None:
+  index = (DOCS / 'index.md').read_text('utf-8')
+  trees = re.findall(r'```{toctree}\n(.*?)```', index, re.DOTALL)
+  listed = {line for tree in trees for line in tree.splitlines() if line}
+  pages = {
+    path.relative_to(DOCS).with_suffix('').as_posix()
+    for kind in ('md', 'ipynb')
+    for path in DOCS.rglob(f'*.{kind}')
+  }
+  assert {p for p in listed if not p.startswith(':')} == pages - {'index'}
+
+
 def test_the_program_of_the_tutorial_reads_its_message() -> None:
   text = (DOCS / 'tutorial.md').read_text('utf-8')
   (program,) = re.findall(r'```python\n(.*?)```', text, re.DOTALL)
