@@ -8,6 +8,8 @@ from typing import Any
 import numpy as np
 
 from waggle_tasks import errors
+from waggle_tasks import fidelity as fidelity_lib
+from waggle_tasks.experiments.episodes import low_level
 from waggle_tasks.experiments.record import scenario_fields
 from waggle_tasks.experiments.studies import (
   link_conditions,
@@ -33,6 +35,7 @@ class Plan:
     observers: How many observers each of them has.
     bits: What is sent in place of a payload: characters of 0 and 1, or
       'random:64' for as many that each message draws; empty for payloads.
+    fidelity: How much of each broadcast is made, see `Scenario.fidelity`.
   """
 
   schemes: Sequence[link_schemes.Scheme]
@@ -42,6 +45,7 @@ class Plan:
   broadcasts: int
   observers: int
   bits: str = ''
+  fidelity: str = fidelity_lib.PIXELS
 
   def __post_init__(self) -> None:
     for field in ('conditions', 'distances_m', 'bearings_deg'):
@@ -76,11 +80,13 @@ def cases(plan: Plan) -> tuple[list[sweep_cases.Sample], list[str]]:
       'bearing_deg': bearing_deg,
     }  # fmt: skip
     try:
-      out += [
+      made = [
         sample
         for number in range(plan.broadcasts)
         for sample in _message(scheme, cell, number, plan)
       ]
+      low_level.check([each.scene for each in made], scheme.receiver)
+      out += made
     except errors.WaggleError as error:
       refused.append(f'{scheme.name}, {condition}: {error}')
   if not out:
@@ -100,7 +106,7 @@ def _message(
     **scenario_fields.defaults(), **scheme.values, **condition.values,
     'distance_m': cell['distance_m'], 'bearing_deg': cell['bearing_deg'],
     'observers': plan.observers, 'payload': sweep_cases.RANDOM,
-    'bits': plan.bits,
+    'bits': plan.bits, 'fidelity': plan.fidelity,
   }  # fmt: skip
   samples = [sweep_cases.draw({}, base | _drawn(condition, number), number)]
   if scheme.sendings > 1:  # The same payload, and seeds that follow from one.
