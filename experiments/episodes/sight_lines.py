@@ -74,6 +74,8 @@ def of(scene: scenario.Scenario) -> list[Sight]:
     sways[name] = draw(random_state, home.yaw_rad, agreed.rate_hz)
   sways_m = {
     name: np.array([sway.at(each)[0] for each in times_s])
+    if drift.near_m
+    else np.zeros((len(times_s), 4))
     for name, sway in sways.items()
   }
   places_m = _dance_m(scene, homes['performer'], times_s)
@@ -108,9 +110,7 @@ def _dance_m(
     out[end:] = home.position_m + rest @ axes[: len(rest)]
   for row in np.flatnonzero(times_s > stop_s):
     motion = danced.motion(stop_s)
-    offset, *_ = minimum_jerk.to_rest(
-      *motion, times_s[row] - stop_s, _BRAKE_S
-    )
+    offset, *_ = minimum_jerk.to_rest(*motion, times_s[row] - stop_s, _BRAKE_S)
     out[row] = home.position_m + offset @ axes[: len(offset)]
   return out
 

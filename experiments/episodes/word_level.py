@@ -1,8 +1,10 @@
 """An episode of words alone: whether each frame is read, from a measured table.
 
 The share of frames that is read is not known, but estimated from few: it is
-drawn from what those few leave open, by Jeffreys' prior (Brown, Cai and
-DasGupta 2001, doi:10.1214/ss/1009213286), once for every world.
+drawn from what those few leave open, once for every world. That of a condition
+is drawn by Jeffreys' prior (Brown, Cai and DasGupta 2001,
+doi:10.1214/ss/1009213286), that of each cell by its own frames and one more,
+which was read as often as others of the condition.
 """
 
 from collections.abc import Sequence
@@ -18,6 +20,8 @@ from waggle_tasks.protocol import checks
 
 _STREAM = 19  # Of a seed: what is drawn here is drawn by nobody else.
 _PRIOR = 0.5
+_COUNTS = 'read', 'sent'
+_LEAST = 1e-6  # Of a share, which is never quite none or all.
 
 
 @dataclasses.dataclass(frozen=True)
@@ -77,7 +81,7 @@ class Channel:
     cells = known.inside(
       watching.condition, watching.near_m, watching.far_m, watching.aside_deg
     )
-    self._shares = np.stack([shares(cell, worlds, rng) for cell in cells], 1)
+    self._shares = shares(cells, known, worlds, rng)
 
   @property
   def share(self) -> np.ndarray:
@@ -103,11 +107,25 @@ class Channel:
 
 
 def shares(
-  cell: ladder_table.Cell, count: int, rng: np.random.Generator
+  cells: Sequence[ladder_table.Cell],
+  table: ladder_table.Table,
+  count: int,
+  rng: np.random.Generator,
 ) -> np.ndarray:
-  """(N,) what share of a cell's frames may be read, drawn."""
-  failed = cell.sent - cell.read
-  return rng.beta(cell.read + _PRIOR, failed + _PRIOR, count)
+  """(N, C) what share of the frames of cells may be read, drawn N times.
+
+  Args:
+    cells: Cells of one condition.
+    table: Where they are from.
+    count: How many times.
+    rng: What is drawn from.
+  """
+  alike = [c for c in table.cells if c.condition == cells[0].condition]
+  read, sent = (sum(getattr(c, name) for c in alike) for name in _COUNTS)
+  usual = rng.beta(read + _PRIOR, sent - read + _PRIOR, (count, 1))
+  usual = usual.clip(_LEAST, 1 - _LEAST)
+  own, all_ = (np.array([getattr(c, n) for c in cells]) for n in _COUNTS)
+  return rng.beta(own + usual, all_ - own + 1 - usual)
 
 
 def read(
@@ -132,7 +150,7 @@ def read(
     )
     weights, cells = zip(*about, strict=True)
     cell = cells[rng.choice(len(cells), p=np.array(weights) / sum(weights))]
-    (share,) = shares(cell, 1, rng)
+    share = float(shares([cell], known, 1, rng)[0, 0])
     tries = np.flatnonzero(rng.random(scene.repeat) < share)
     black = scene.control == 'black_input' and number == scene.black_observer
     expected = None if black or not performance.message else scene.payload

@@ -11,7 +11,7 @@ from waggle_tasks.experiments.machine import table as table_lib
 from waggle_tasks.experiments.results import intervals
 from waggle_tasks.experiments.studies import ladder_flight
 
-_DRAWN = 20_000  # Shares of each cell, for the limits of words.
+_DRAWN = 4_000  # Shares of each cell, for the limits of words.
 
 
 @dataclasses.dataclass(frozen=True)
@@ -142,11 +142,15 @@ def _cells(
 
 def _words(table: ladder_table.Table, rows: Sequence[ladder_flight.Row]) -> str:
   """The share that words are read at these places, with what is left open."""
-  rng, drawn = np.random.default_rng(0), np.zeros(_DRAWN)
-  for row in rows:
+  rng = np.random.default_rng(0)
+  about = [
+    (weight, cell)
+    for row in rows
     for weight, cell in table.about(
       row.condition, row.distance_m, row.angle_deg
-    ):
-      drawn += weight * word_level.shares(cell, _DRAWN, rng)
+    )
+  ]
+  weights, cells = zip(*about, strict=True)
+  drawn = word_level.shares(cells, table, _DRAWN, rng) @ np.array(weights)
   low, high = np.quantile(drawn / len(rows), [0.025, 0.975])
   return f'{low:.1%} to {high:.1%}'
