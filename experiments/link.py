@@ -97,8 +97,11 @@ def main(argv: Sequence[str]) -> int:
   for line in refused:
     print(f'not flown: {line}', file=sys.stderr)
   # Imported here: help needs no simulator.
+  from waggle_tasks.experiments.episodes import low_level
   from waggle_tasks.experiments.studies import link_study, runner
 
+  for case in cases:
+    low_level.check([case.scene], case.receiver)
   engine, _ = engine_flag.engine()
   command = provenance.command_line('link', launch.given_flags())
   folder = pathlib.Path(_OUTPUT.value)

@@ -20,6 +20,9 @@ DROPS, BLACKOUTS = 'drop30', 'blackouts'
 CONDITIONS = CALM, NOISE, MOCAP, DROPS, BLACKOUTS
 # What those of the conditions are that a scenario may have in part.
 NOISE_SIGMA = 10.0
+# A tracker tells where a target rested from one that has left that place for
+# so long (`agents.ghost`).
+LAG_S = 0.16
 _SAME = 1e-6
 
 
@@ -41,7 +44,7 @@ class Track:
     memory: How much of that is left in the next image, -1 to 1.
     lost: Share of images, in which it could be seen, without the target.
     run: How many such images follow each other, in the mean.
-    moved_px: How far it had moved when the tracker found it.
+    moved_px: How far it had moved `LAG_S` before the tracker found it.
   """
 
   bias_px: tuple[float, float]

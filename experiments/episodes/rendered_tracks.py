@@ -43,7 +43,7 @@ class _Watcher:
     self._sight, self._images = sight, iter(sight.images())
     self._rows: list[tuple[int, tuple[float, float], bool]] = []
     self._frames: dict[float, int] = {}
-    self._moved_px = 0.0
+    self._moved_px, self._lag = 0.0, scene.agreement.frames(ladder_table.LAG_S)
     self.events: list[receiver.Event] = []
     self.done = False
 
@@ -61,8 +61,7 @@ class _Watcher:
     ghost = self._tracker.ghost
     if ghost is not None:
       if not self._rows:
-        off_px = self._sight.places_px[frame] - self._sight.places_px[0]
-        self._moved_px = float((off_px**2).sum() ** 0.5)
+        self._moved_px = self._sight.moved_px(frame - self._lag)
       self._rows += [
         (self._frames[each.time_s], tuple(each.centre_px), each.valid)
         for each in tracks

@@ -46,6 +46,11 @@ class Sight:
   come: np.ndarray
   times_s: np.ndarray
 
+  def moved_px(self, frame: int, home: int = 0) -> float:
+    """How far the target is in a frame from where it was in another."""
+    places_px = self.places_px[max(frame, 0)], self.places_px[home]
+    return math.dist(*places_px)
+
   def images(self) -> Iterator[tuple[float, int]]:
     """The times and the frames of images that come, -1 for black ones."""
     last_s = -math.inf

@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Sequence
 import dataclasses
 import math
+from typing import cast
 
 import numpy as np
 
@@ -20,10 +21,7 @@ from waggle_tasks.experiments.episodes import (
   track_errors,
 )
 
-# A ghost is told from what moves by an image at least so much older, as the
-# tracker has it.
-_LAG_S = 0.16
-_STILL = 0.5  # Of how far it must have moved: less is rest.
+_STILL_PX = 2.0  # A target that moves by less rests, as the tracker has it.
 _BEGUN_PX = 0.1  # Of a motion.
 _STREAM = 18  # Of a seed: what is drawn here is drawn by nobody else.
 
@@ -49,13 +47,14 @@ def make(name: str, scene: scenario.Scenario) -> joint_receiver.JointReceiver:
   Raises:
     LadderError: if the receiver cannot be given tracks.
   """
-  reader = receivers.make(name, scene.agreement)
-  if not isinstance(reader, joint_receiver.JointReceiver):
+  made, _ = receivers.configured(name)
+  if made is not joint_receiver.JointReceiver:
     raise ladder_table.LadderError(
       f"`receiver` must be 'joint' at fidelity {scene.fidelity!r}: got"
       f' {name!r}, whose stages were not measured apart'
     )
-  return reader
+  reader = receivers.make(name, scene.agreement)
+  return cast(joint_receiver.JointReceiver, reader)
 
 
 def check(scene: scenario.Scenario, table: ladder_table.Table) -> None:
@@ -199,16 +198,19 @@ class _Learner:
       return []
     away_px = 0.0
     if self.home >= 0:
-      places_px = self._sight.places_px
-      away_px = math.dist(places_px[frame], places_px[self.home])
+      away_px = self._sight.moved_px(frame, self.home)
     if not self._learned:
-      if self.home < 0 or away_px > _STILL * self._moved_px:
+      if self.home < 0 or away_px > max(self._moved_px, _STILL_PX):
         self.home, self._since_s = frame, time_s
       self._learned = elapsed.lasted(self._since_s, time_s, self._learn_s)
       return []
     if not self._moving and away_px <= _BEGUN_PX:
       return []
     self._moving.append((time_s, frame))
-    if away_px < self._moved_px or time_s - self._moving[0][0] < _LAG_S - 1e-6:
+    if away_px < self._moved_px or not any(
+      self._sight.moved_px(each, self.home) >= self._moved_px
+      for at_s, each in self._moving
+      if time_s - at_s > ladder_table.LAG_S - 1e-6 and each >= 0
+    ):
       return []
     return self._moving

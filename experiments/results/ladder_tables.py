@@ -6,10 +6,13 @@ import statistics
 
 import numpy as np
 
-from waggle_tasks.experiments.episodes import ladder_table, word_level
+from waggle_tasks.experiments.episodes import (
+  ladder_row,
+  ladder_table,
+  word_level,
+)
 from waggle_tasks.experiments.machine import table as table_lib
 from waggle_tasks.experiments.results import intervals
-from waggle_tasks.experiments.studies import ladder_flight
 
 _DRAWN = 4_000  # Shares of each cell, for the limits of words.
 
@@ -33,7 +36,7 @@ class Agreement:
   only_tracks: int
 
   @classmethod
-  def of(cls, rows: Iterable[ladder_flight.Row]) -> 'Agreement':
+  def of(cls, rows: Iterable[ladder_row.Row]) -> 'Agreement':
     """Counts some rows."""
     pairs = [(row.pixels == row.sent, row.tracks == row.sent) for row in rows]
     seen, told = (sum(each) for each in zip(*pairs, strict=True))
@@ -81,9 +84,7 @@ def measured(table: ladder_table.Table) -> str:
   return table_lib.render(header, rows)
 
 
-def agreement(
-  rows: Sequence[ladder_flight.Row], table: ladder_table.Table
-) -> str:
+def agreement(rows: Sequence[ladder_row.Row], table: ladder_table.Table) -> str:
   """How the levels agree on the same cases, for people."""
   lines = []
   for condition in dict.fromkeys(row.condition for row in rows):
@@ -107,7 +108,7 @@ def agreement(
   return '\n'.join([table_lib.render(header, lines), '', *totals(rows)])
 
 
-def totals(rows: Sequence[ladder_flight.Row]) -> list[str]:
+def totals(rows: Sequence[ladder_row.Row]) -> list[str]:
   """What holds for all cases together."""
   cells, whole = _cells(rows), Agreement.of(rows)
   apart = sum(not Agreement.of(cell).inside for cell in cells)
@@ -131,16 +132,16 @@ def totals(rows: Sequence[ladder_flight.Row]) -> list[str]:
 
 
 def _cells(
-  rows: Iterable[ladder_flight.Row],
-) -> list[list[ladder_flight.Row]]:
-  groups: dict[tuple[str, float, float], list[ladder_flight.Row]] = {}
+  rows: Iterable[ladder_row.Row],
+) -> list[list[ladder_row.Row]]:
+  groups: dict[tuple[str, float, float], list[ladder_row.Row]] = {}
   for row in rows:
     key = row.condition, row.distance_m, row.angle_deg
     groups.setdefault(key, []).append(row)
   return [*groups.values()]
 
 
-def _words(table: ladder_table.Table, rows: Sequence[ladder_flight.Row]) -> str:
+def _words(table: ladder_table.Table, rows: Sequence[ladder_row.Row]) -> str:
   """The share that words are read at these places, with what is left open."""
   rng = np.random.default_rng(0)
   about = [

@@ -8,45 +8,11 @@ from waggle_tasks import fidelity, scenario
 from waggle_tasks.agents import receiver
 from waggle_tasks.experiments.episodes import (
   evaluator,
-  ladder_table,
+  ladder_row,
   rendered_tracks,
   track_level,
 )
 from waggle_tasks.experiments.studies import sweep_cases
-
-
-@dataclasses.dataclass(frozen=True, kw_only=True)
-class Row:
-  """One broadcast to one observer.
-
-  Attributes:
-    identity: Which case it was, and by which sources.
-    condition: What disturbed it.
-    distance_m: Where the observer stood...
-    angle_deg: ...and how far to the side.
-    sent: The message.
-    pixels: What was read of pictures; None for nothing.
-    tracks: What was read of tracks; None for nothing, or where they were not
-      made.
-    late_s: How long after its last motion it was read of pictures.
-    track: The errors of the tracker; None where it hardly saw anything.
-    pixels_s: Processor time for pictures, up to the message.
-    tracks_s: Processor time for tracks, up to the message.
-    renderer: What drew the pictures.
-  """
-
-  identity: str
-  condition: str
-  distance_m: float
-  angle_deg: float
-  sent: str
-  pixels: str | None = None
-  tracks: str | None = None
-  late_s: float | None = None
-  track: ladder_table.Track | None = None
-  pixels_s: float = 0.0
-  tracks_s: float = 0.0
-  renderer: str = ''
 
 
 def fly(
@@ -54,13 +20,13 @@ def fly(
   case: sweep_cases.Sample,
   identity: str,
   both: bool,
-) -> Row:
+) -> ladder_row.Row:
   """Renders a case, and makes its tracks too; called in a worker.
 
   Args:
     report: Told now and then how many seconds are done.
     case: The case, of one observer.
-    identity: See `Row`.
+    identity: See `ladder_row.Row`.
     both: Whether tracks are made too.
   """
   begin_s = time.process_time()
@@ -77,7 +43,7 @@ def fly(
     tracks, _ = message(events)
   read, read_s = message(watched.events)
   said_s = case.scene.performance.said_s
-  return Row(
+  return ladder_row.Row(
     identity=identity,
     condition=case.cell['condition'],
     distance_m=case.cell['distance_m'],

@@ -1,23 +1,26 @@
 """The rendered cases that the ladder of fidelity stands on."""
 
 from collections.abc import Sequence
+import dataclasses
+import itertools
 import pathlib
 
+import numpy as np
+
 from waggle_tasks.experiments.episodes import identity as identity_lib
-from waggle_tasks.experiments.episodes import ladder_table
-from waggle_tasks.experiments.record import provenance
+from waggle_tasks.experiments.episodes import ladder_row, ladder_table
+from waggle_tasks.experiments.record import provenance, scenario_fields
 from waggle_tasks.experiments.studies import (
   batch,
   ladder_flight,
-  link_cases,
+  link_conditions,
   link_schemes,
   pool,
   sweep_cases,
 )
+from waggle_tasks.protocol import checks
 
 LANGUAGE, RECEIVER = 'swift', 'joint'
-DISTANCES_M = (0.6, 1.0, 1.3, 2.0, 3.0)
-ANGLES_DEG = (0.0, 30.0, 60.0, 75.0)
 TABLE = 'ladder.json'
 _FILES = TABLE, 'summary.txt', 'ladder.svg', 'ladder.png'
 
@@ -39,14 +42,39 @@ def cases(
   Raises:
     WaggleError: if there is no such cell.
   """
-  plan = link_cases.Plan(
-    (link_schemes.Scheme(LANGUAGE, LANGUAGE, RECEIVER),),
-    conditions, distances_m, angles_deg, numbers.stop, 1,
-  )  # fmt: skip
-  samples, _ = link_cases.cases(plan)
-  # A repeat of every cell before the next: the whole map is soon seen.
-  kept = [each for each in samples if each.repeat in numbers]
-  return sorted(kept, key=lambda each: each.repeat)
+  places = {'distances': distances_m, 'bearings': angles_deg}
+  for field, values in (('conditions', conditions), *places.items()):
+    link_schemes.once(field, values)
+  cells = itertools.product(distances_m, angles_deg, conditions)
+  out = [_case(*cell, number) for cell in cells for number in numbers]
+  # A broadcast of every cell before the next: the whole map is soon seen.
+  return sorted(out, key=lambda each: each.repeat)
+
+
+def _case(
+  distance_m: float, angle_deg: float, condition: str, number: int
+) -> sweep_cases.Sample:
+  """One broadcast of a cell: what link sends, with black-outs of its own."""
+  checks.choice(
+    'conditions', condition, ladder_table.CONDITIONS, ladder_table.LadderError
+  )
+  known = link_conditions.CONDITIONS[condition]
+  place = round(100 * distance_m), round(10 * abs(angle_deg)), number
+  rng = np.random.default_rng(place)
+  drawn = {
+    name: round(float(rng.uniform(0.0, most)), 2)
+    for name, most in known.drawn.items()
+  }
+  values = {
+    **scenario_fields.defaults(), **known.values, **drawn,
+    'language': LANGUAGE, 'observers': 1, 'payload': sweep_cases.RANDOM,
+    'distance_m': distance_m, 'bearing_deg': angle_deg,
+  }  # fmt: skip
+  sample = sweep_cases.draw({}, values, number)
+  cell = {
+    'condition': condition, 'distance_m': distance_m, 'bearing_deg': angle_deg,
+  }  # fmt: skip
+  return dataclasses.replace(sample, cell=cell, receiver=RECEIVER)
 
 
 def run(
@@ -55,7 +83,7 @@ def run(
   folder: pathlib.Path,
   engine: pool.Engine,
   command: str,
-) -> list[ladder_flight.Row]:
+) -> list[ladder_row.Row]:
   """Renders cases, and makes their tracks too where `both` are asked for."""
   digest = provenance.source_digest(provenance.deciding_hashes())
   jobs = {}
@@ -65,14 +93,12 @@ def run(
     name = f'{case.cell["condition"]} {case.name}'
     jobs[identity] = batch.job(name, ladder_flight.fly, case, identity, both)
   what = 'ladder', _FILES
-  return batch.run(jobs, ladder_flight.Row, folder, engine, command, what)
+  return batch.run(jobs, ladder_row.Row, folder, engine, command, what)
 
 
-def table(
-  rows: Sequence[ladder_flight.Row], command: str
-) -> ladder_table.Table:
+def table(rows: Sequence[ladder_row.Row], command: str) -> ladder_table.Table:
   """What follows from rendered broadcasts."""
-  groups: dict[tuple[str, float, float], list[ladder_flight.Row]] = {}
+  groups: dict[tuple[str, float, float], list[ladder_row.Row]] = {}
   for row in rows:
     key = row.condition, row.distance_m, row.angle_deg
     groups.setdefault(key, []).append(row)
@@ -85,7 +111,7 @@ def table(
 
 
 def _cell(
-  key: tuple[str, float, float], rows: Sequence[ladder_flight.Row]
+  key: tuple[str, float, float], rows: Sequence[ladder_row.Row]
 ) -> ladder_table.Cell:
   right = [row for row in rows if row.pixels == row.sent]
   return ladder_table.Cell(
