@@ -293,16 +293,15 @@ def test_a_sweep_of_tracks_needs_no_pictures(
   assert all(table['outcomes'][0]['right'] for table in tables)
 
 
-def test_broadcasts_without_pictures_print_what_was_read(
+def test_a_broadcast_without_pictures_prints_what_was_read(
   waggle: Waggle, tmp_path: pathlib.Path
 ) -> None:
-  for level in ('tracks', 'symbols'):
-    done = waggle(
-      'broadcast', f'--fidelity={level}', '--language=swift', '--observers=1',
-      cwd=tmp_path,
-    )  # fmt: skip
-    assert done.returncode == 0, done.stderr
-    assert '1 of 1 observers decoded 000010' in done.stdout
+  done = waggle(
+    'broadcast', '--fidelity=symbols', '--language=swift', '--observers=1',
+    cwd=tmp_path,
+  )  # fmt: skip
+  assert done.returncode == 0, done.stderr
+  assert '1 of 1 observers decoded 000010' in done.stdout
   bad = waggle('broadcast', '--fidelity=tracks', cwd=tmp_path)
   assert bad.returncode == 2
   assert '`language`' in bad.stderr or '`receiver`' in bad.stderr

@@ -44,7 +44,7 @@ def check(
         f'`replays` must be 0 at fidelity {scene.fidelity!r}, which has no'
         ' pictures to show again'
       )
-    track_level.make(receiver_name, scene)
+    track_level.check_receiver(receiver_name, scene)
     table = ladder_table.read()
     if scene.fidelity == fidelity.SYMBOLS:
       word_level.read(scene, table)
@@ -68,7 +68,7 @@ def run(
     LadderError: if it cannot be told.
   """
   if scene.fidelity == fidelity.SYMBOLS:
-    track_level.make(receiver_name, scene)
+    track_level.check_receiver(receiver_name, scene)
     outcomes = word_level.read(scene)
     return verdicts.Verdict(tuple(outcomes)), [[] for _ in outcomes]
   events = track_level.read(scene, receiver_name)

@@ -41,11 +41,11 @@ class Step:
   time_s: float
 
 
-def make(name: str, scene: scenario.Scenario) -> joint_receiver.JointReceiver:
-  """A receiver that reads tracks.
+def check_receiver(name: str, scene: scenario.Scenario) -> None:
+  """Refuses a receiver that cannot be given tracks.
 
   Raises:
-    LadderError: if the receiver cannot be given tracks.
+    LadderError: naming it.
   """
   made, _ = receivers.configured(name)
   if made is not joint_receiver.JointReceiver:
@@ -53,6 +53,15 @@ def make(name: str, scene: scenario.Scenario) -> joint_receiver.JointReceiver:
       f"`receiver` must be 'joint' at fidelity {scene.fidelity!r}: got"
       f' {name!r}, whose stages were not measured apart'
     )
+
+
+def make(name: str, scene: scenario.Scenario) -> joint_receiver.JointReceiver:
+  """A receiver that reads tracks.
+
+  Raises:
+    LadderError: if the receiver cannot be given tracks.
+  """
+  check_receiver(name, scene)
   reader = receivers.make(name, scene.agreement)
   return cast(joint_receiver.JointReceiver, reader)
 

@@ -60,7 +60,7 @@ def draw(
     for axis in (accuracy, times):
       axis.grid(alpha=0.3)
     figure.legend(
-      *accuracy.get_legend_handles_labels(), loc='outside upper center', ncols=3
+      *accuracy.get_legend_handles_labels(), loc='outside upper center', ncols=2
     )
 
   return figures.write(paint, folder, colony_study.FIGURES, _SIZE_IN, MISSING)
