@@ -113,10 +113,10 @@ def _dance_m(
       out[row] = home.position_m + offset @ axes[: len(offset)]
     rest = slot.gesture.end_m
     out[end:] = home.position_m + rest @ axes[: len(rest)]
-  for row in np.flatnonzero(times_s > stop_s):
-    motion = danced.motion(stop_s)
-    offset, *_ = minimum_jerk.to_rest(*motion, times_s[row] - stop_s, _BRAKE_S)
-    out[row] = home.position_m + offset @ axes[: len(offset)]
+  motion = danced.motion(stop_s)
+  for late in np.flatnonzero(times_s > stop_s):
+    offset, *_ = minimum_jerk.to_rest(*motion, times_s[late] - stop_s, _BRAKE_S)
+    out[late] = home.position_m + offset @ axes[: len(offset)]
   return out
 
 

@@ -44,8 +44,8 @@ def fit(
   memory = (left_px[1:] * left_px[:-1]).mean(axis=0)
   memory /= np.maximum(spread_px**2, 1e-9)
   lost = 1 - valid.mean()
-  begins = np.count_nonzero(~valid[1:] & valid[:-1]) + int(not valid[0])
-  run = np.count_nonzero(~valid) / max(begins, 1)
+  begins = int((~valid[1:] & valid[:-1]).sum()) + int(not valid[0])
+  run = int((~valid).sum()) / max(begins, 1)
   return ladder_table.Track(
     _pair(found[0]), _pair(found[1]), _pair(spread_px),
     _pair(np.clip(memory, -0.99, 0.99)), round(float(lost), 4),

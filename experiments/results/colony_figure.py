@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 import math
 import pathlib
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from waggle_tasks.experiments.episodes import colony_limits
 from waggle_tasks.experiments.results import (
@@ -91,7 +91,7 @@ def _line(
 ) -> None:
   model, vehicles, noise, condition = key
   published = condition == colony_tables.PERFECT
-  look = {
+  look: dict[str, Any] = {
     'color': _COLOURS[number % len(_COLOURS)],
     'marker': _MARKS[number % len(_MARKS)],
     'ms': 4,
