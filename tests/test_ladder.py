@@ -204,6 +204,13 @@ def test_errors_that_are_drawn_are_those_that_were_fitted() -> None:
   assert found.run == pytest.approx(3.0, rel=0.15)
 
 
+def test_a_target_that_was_not_found_is_not_read() -> None:
+  table = ladder_table.read()
+  cells = tuple(dataclasses.replace(c, tracks=()) for c in table.cells)
+  blind = dataclasses.replace(table, cells=cells)
+  assert track_level.read(scene(), 'joint', blind) == [[]]
+
+
 def test_words_are_read_as_often_as_was_measured() -> None:
   cells = tuple(
     ladder_table.Cell('calm', 1.0, angle, 1000, read, 0, (0.2,), ())

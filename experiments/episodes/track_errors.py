@@ -10,6 +10,10 @@ from waggle_tasks.experiments.episodes import ladder_table, sight_lines
 
 _FEWEST = 10  # Images that tell of errors.
 _RANDOM = np.random.Generator
+# Of a target that is never found: it never moves far enough.
+_NEVER = ladder_table.Track(
+  (0.0, 0.0), (0.0, 0.0), (0.0, 0.0), (0.0, 0.0), 1.0, 1.0, 1e9
+)
 
 
 def fit(
@@ -81,20 +85,12 @@ def cells(
   conditions = {ladder_table.MOCAP: 1.0} if hovers else {
     ladder_table.CALM: 1 - sigma / most, ladder_table.NOISE: sigma / most
   }  # fmt: skip
-  out = [
+  return [
     (share * weight, cell)
     for condition, share in conditions.items()
     if share
     for weight, cell in table.about(condition, distance_m, angle_deg)
   ]
-  for _, cell in out:
-    if not cell.tracks:
-      raise ladder_table.LadderError(
-        f'nothing was seen at {cell.distance_m:g} m and {cell.angle_deg:g}'
-        f' degrees in {cell.condition!r}, so fidelity'
-        f' {scene.fidelity!r} knows no errors there'
-      )
-  return out
 
 
 def pick(
@@ -105,6 +101,8 @@ def pick(
 ) -> tuple[ladder_table.Track, float]:
   """The errors of one measured broadcast, of the cells about a sight.
 
+  In some the target was never found.
+
   Returns:
     The errors, and pixels there over those at the measured place.
 
@@ -114,7 +112,8 @@ def pick(
   about = cells(table, scene, sight.distance_m, sight.angle_deg)
   weights = np.array([weight for weight, _ in about])
   _, cell = about[rng.choice(len(about), p=weights / weights.sum())]
-  track = cell.tracks[rng.integers(len(cell.tracks))]
+  number = int(rng.integers(cell.sent))
+  track = cell.tracks[number] if number < len(cell.tracks) else _NEVER
   return track, cell.distance_m / sight.distance_m
 
 
