@@ -21,7 +21,7 @@ CLAIMS = {
       'sweep', '--fidelity=tracks', '--receiver=joint', '--language=swift',
       '--observers=1', '--payload=random', '--repeats=2',
       '--grid=control=swapped,half_frame,seven_bits',
-      '--grid=distance_m=0.6,2', '--grid=dropped_share=0.3',
+      '--grid=distance_m=0.6,2', '--grid=dropped_share=0,0.3',
     ),
   ),
   'nest-choice': _swarms(
