@@ -96,13 +96,13 @@ def test_dances_that_are_hard_to_read_take_longer(model: str) -> None:
   assert steps[1] > 1.2 * steps[0]
 
 
-def test_frames_that_are_read_wrongly_mislead_a_swarm() -> None:
+def test_frames_that_are_read_wrongly_keep_a_swarm_from_agreeing() -> None:
   swarm = dataclasses.replace(SWARM, vehicles=50, qualities=(1.0, 0.8))
   right, wrong = (
-    colony_worlds.run(dataclasses.replace(swarm, wrong=share), 100, 0).chosen
+    colony_worlds.run(dataclasses.replace(swarm, wrong=share), 100, 0).steps
     for share in (0.0, 0.5)
   )
-  assert (wrong == 0).mean() < (right == 0).mean() - 0.05
+  assert np.median(wrong) > 1.5 * np.median(right)
 
 
 def test_a_swarm_follows_from_its_seed() -> None:
