@@ -1,6 +1,7 @@
 """Reads frames of any language as a whole: the receiver of the link."""
 
 from collections import deque
+from collections.abc import Sequence
 import dataclasses
 import math
 from typing import ClassVar
@@ -156,9 +157,29 @@ class JointReceiver:
   ) -> tuple[receiver.Event, ...]:
     """What an image confirms that may be one of this stream."""
     tracks = self._tracker.step(image, time_s)
-    self.track = tracks[-1]
     ghost = self._tracker.ghost
-    if ghost is None:
+    anchor_px = None if ghost is None else ghost.anchor_px
+    return self.follow(tracks, anchor_px, time_s)
+
+  def follow(
+    self,
+    tracks: Sequence[klt.Track],
+    anchor_px: np.ndarray | None,
+    time_s: float,
+  ) -> tuple[receiver.Event, ...]:
+    """Takes what a tracker makes of an image: reading begins here.
+
+    Args:
+      tracks: The target in this image; when it has just left the place where
+        it hovered, in all images since its motion began. At least one.
+      anchor_px: (2,) where it hovered; None as long as it has not moved.
+      time_s: The time of the image.
+
+    Returns:
+      The events that this image confirms, as `step` does.
+    """
+    self.track = tracks[-1]
+    if anchor_px is None:
       if self._history:
         self._forget()
       if self.track.valid:
@@ -168,7 +189,7 @@ class JointReceiver:
       return ()
     if not self._history:
       before = [at for at in self._rests if at < tracks[0].time_s]
-      self._history.rest(before, ghost.anchor_px)
+      self._history.rest(before, anchor_px)
     for track in tracks:
       self._history.add(track)
     self._history.forget(time_s, 2 * (self._length_s + self._late_s))

@@ -21,7 +21,8 @@ _ONLY = flags.DEFINE_list(
   'only',
   [],
   'Only these parts: cameras, stages, receivers, realtime, languages, dynamics,'
-  ' learners, which takes the extra rl, observers, memory, workers.',
+  ' fidelities, learners, which takes the extra rl, observers, memory,'
+  ' workers.',
 )
 _RECEIVER = flags.DEFINE_multi_string('receiver', None, '')
 # absl adds a sentence to the help of a flag that may be given again.

@@ -2,7 +2,8 @@
 
 Prints a table with a line for each observer and the verdict on the group, and
 leaves a run folder: index.html is its report, to be opened in a browser, made
-from the data beside it. --video films the episode, --raw keeps every image
+from the data beside it. At another --fidelity than pixels nobody flies, and
+only the table is left. --video films the episode, --raw keeps every image
 that a receiver took. Exit status 0 when the group passed, 1 when it did not, 2
 on bad input.
 """
@@ -14,7 +15,7 @@ import sys
 
 from absl import flags
 
-from waggle_tasks import scenario
+from waggle_tasks import fidelity, scenario
 from waggle_tasks.experiments import launch
 from waggle_tasks.experiments.flags import (
   config_flag,
@@ -57,8 +58,13 @@ def main(argv: Sequence[str]) -> int:
   scene, receiver_name = config_flag.chosen(_CONFIG, _RECEIVER)
   foresight.tell([scene], receiver_name)
   # Imported here: help needs no simulator.
-  from waggle_tasks.experiments.episodes import evaluator, outside
+  from waggle_tasks.experiments.episodes import evaluator, low_level, outside
 
+  if scene.fidelity != fidelity.PIXELS:
+    low_level.check([scene], receiver_name)
+    verdict, _ = low_level.run(scene, receiver_name)
+    print(report(scene, verdict))
+    return 0 if verdict.passed else 1
   command = provenance.command_line('broadcast', launch.given_flags())
   try:
     foreign = outside.paths(receiver_name, [scene])

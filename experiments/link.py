@@ -18,6 +18,7 @@ import sys
 
 from absl import flags
 
+from waggle_tasks import fidelity as fidelity_lib
 from waggle_tasks.experiments import launch
 from waggle_tasks.experiments.flags import engine_flag
 from waggle_tasks.experiments.pages import link_page
@@ -55,6 +56,10 @@ _BITS = flags.DEFINE_string(
   ' of 0 and 1, or random:N for N bits that each message draws; in any language'
   ' but the paper\'s.',
 )  # fmt: skip
+_FIDELITY = flags.DEFINE_string(
+  'fidelity', fidelity_lib.PIXELS, 'How much of each broadcast is made, one of'
+  f' {", ".join(fidelity_lib.FIDELITIES)}.',
+)  # fmt: skip
 _AIRTIME = flags.DEFINE_float(
   'airtime_s', None, 'Time that all schemes are given to be compared, s;'
   f' unset, that of {link_tables.ROUNDS} messages of the paper.',
@@ -83,6 +88,7 @@ def main(argv: Sequence[str]) -> int:
     _BROADCASTS.value,
     _OBSERVERS.value,
     _BITS.value,
+    _FIDELITY.value,
   )
   airtime_s = _AIRTIME.value
   if airtime_s is not None and not 0 < airtime_s < float('inf'):
@@ -91,8 +97,11 @@ def main(argv: Sequence[str]) -> int:
   for line in refused:
     print(f'not flown: {line}', file=sys.stderr)
   # Imported here: help needs no simulator.
+  from waggle_tasks.experiments.episodes import low_level
   from waggle_tasks.experiments.studies import link_study, runner
 
+  for case in cases:
+    low_level.check([case.scene], case.receiver)
   engine, _ = engine_flag.engine()
   command = provenance.command_line('link', launch.given_flags())
   folder = pathlib.Path(_OUTPUT.value)

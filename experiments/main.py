@@ -25,6 +25,8 @@ COMMANDS = {
   'sweep': 'Fly a grid of scenarios and map where messages are read.',
   'crossings': 'Fly random crossings of vehicles that avoid each other.',
   'link': 'Compare languages, codes and repetition by what they deliver.',
+  'ladder': 'Measure levels of fidelity on pictures and show how they agree.',
+  'colony': 'Let swarms choose a site by dancing, beside published models.',
   'drift': 'Show how vehicles hover, beside what was measured.',
   'languages': 'Show how long, how quick and how far apart languages are.',
   'learn': 'Let pairs learn a language of their own, and draw how.',

@@ -67,8 +67,10 @@ def main(argv: Sequence[str]) -> int:
   reader = receiver_flag.chosen(_RECEIVER, scenes)
   foresight.tell(scenes, reader)
   # Imported here: to show results, no simulator is needed.
+  from waggle_tasks.experiments.episodes import low_level
   from waggle_tasks.experiments.studies import runner, sweep_study
 
+  low_level.check(scenes, reader, bool(_REPLAYS.value))
   engine, _ = engine_flag.engine()
   command = provenance.command_line('sweep', launch.given_flags())
   factors = '-'.join(['sweep', reader, *grid])

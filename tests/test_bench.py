@@ -17,6 +17,7 @@ from waggle_tasks.agents import receivers
 from waggle_tasks.experiments.bench_parts import (
   cameras,
   events,
+  fidelities,
   learners,
   loops,
   pilots,
@@ -69,6 +70,9 @@ MEASURED = {
     },
     {'ideal': [0.0002], 'rotors': [0.0005]},
   ),
+  'fidelities': fidelities.Levels(
+    {'calm': {'pixels': [3.0, 4.0], 'tracks': [0.1, 0.1]}}, [(600.0, 0.1)]
+  ),
   'learners': learners.Learning({'no pictures': [0.001], 'pictures': [0.003]}),
   'observers': [
     loops.Loop(count, 100, count * cost_s, 1.0, 1.0)
@@ -96,6 +100,8 @@ def test_ratios_are_medians_of_what_was_measured_side_by_side() -> None:
       },
       'simulated time / time on one core, rotors': 8.0,
       'share of a broadcast that rotors add': 0.06,
+      'tracks / pixels, calm': 35.0,
+      'life of a swarm of 1000 / time': 6000.0,
       'steps of a learner, no pictures / pictures': 3.0,
       'cost of a receiver and frame, 16 observers / 2': 1.0,
       'throughput, 2 processes / 1': 2.0,

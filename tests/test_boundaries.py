@@ -266,6 +266,7 @@ def run_python(code: str) -> str:
 # What needs a simulator only to measure, film or fly.
 SIMULATING = frozenset({'episodes', 'bench_parts'})
 SIMULATING_MODULES = frozenset({
+  'studies.ladder_flight', 'studies.ladder_study',
   'studies.link_study', 'studies.replay_flight', 'studies.runner',
   'studies.spoilers', 'studies.suite_case', 'studies.suite_study',
   'studies.sweep_flight', 'studies.sweep_study',

@@ -3,7 +3,7 @@
 from dm_control import composer
 import mujoco
 
-from waggle_tasks import runtime, scenarios
+from waggle_tasks import fidelity, runtime, scenarios
 from waggle_tasks import scenario as scenario_lib
 from waggle_tasks.arenas import flight_room, layouts
 from waggle_tasks.entities import observer, performer
@@ -26,6 +26,7 @@ def parts(scenario: Scenario) -> parts_lib.Parts:
   Those of a task with a second dancer are, for example,
   `dataclasses.replace(made, others=(parts.Dancer(...),), poses=...)`.
   """
+  fidelity.check_rendered(scenario)
   agreement = scenario.agreement
   observers = tuple(
     observer.Observer(

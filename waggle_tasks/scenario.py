@@ -4,6 +4,7 @@ import dataclasses
 
 from waggle_tasks import appearance as appearance_lib
 from waggle_tasks import errors, placement, scenario_rules, spoken
+from waggle_tasks import fidelity as fidelity_lib
 from waggle_tasks import sensor as sensor_lib
 from waggle_tasks.arenas import layouts
 from waggle_tasks.entities import optics
@@ -103,6 +104,9 @@ class Scenario:
       degrees.
     eye_offset_m: How far an observer's eye is ahead of its centre of mass, in
       m.
+    fidelity: How much of an episode is made, one of
+      `fidelity_lib.FIDELITIES`: all of it with its pictures, or tracks, or
+      words, with the errors that were measured on pictures.
   """
 
   control: str = 'none'
@@ -140,6 +144,7 @@ class Scenario:
   camera_height_px: int = camera_lib.Camera.rows
   camera_fovy_deg: float = camera_lib.FOVY_DEG
   eye_offset_m: float = optics.OFFSET_M
+  fidelity: str = fidelity_lib.PIXELS
 
   def __post_init__(self) -> None:
     scenario_rules.check(self)

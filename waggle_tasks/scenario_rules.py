@@ -3,7 +3,7 @@
 import dataclasses
 from typing import TYPE_CHECKING
 
-from waggle_tasks import errors, placement, spoken
+from waggle_tasks import errors, fidelity, placement, spoken
 from waggle_tasks.arenas import bounds
 from waggle_tasks.entities import optics
 from waggle_tasks.protocol import checks, controls, limits
@@ -46,6 +46,7 @@ def check(scene: 'scenario.Scenario') -> None:
   payload_lib.Payload.from_bits(scene.payload, scene.units)
   scene.surroundings.check(scene.poses(), placement.reach_m(scene))
   placement.check_slots(scene)
+  fidelity.check(scene)
 
 
 def _check_numbers(scene: 'scenario.Scenario') -> None:

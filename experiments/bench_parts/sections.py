@@ -8,6 +8,7 @@ from waggle_tasks import errors, registry, scenario
 from waggle_tasks.agents import receivers
 from waggle_tasks.experiments.bench_parts import (
   cameras,
+  fidelities,
   learners,
   loops,
   pilots,
@@ -150,6 +151,7 @@ SECTIONS: dict[str, Callable[[Settings], Any]] = {
     loops.repeat, settings, what=settings.spoken
   ),
   'dynamics': lambda settings: _alone(pilots.measure, settings),
+  'fidelities': lambda settings: _alone(fidelities.measure, settings),
   'learners': lambda settings: _alone(learners.measure, settings),
   'observers': lambda settings: _alone(
     loops.repeat, settings, what=settings.crowds

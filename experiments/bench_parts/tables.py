@@ -10,6 +10,7 @@ from typing import Any
 
 from waggle_tasks.experiments.bench_parts import (
   cameras,
+  fidelities,
   learners,
   loops,
   pilots,
@@ -268,6 +269,7 @@ _PARTS: dict[str, tuple[Callable[..., str], Callable[..., Ratios]]] = {
   'realtime': (_realtime, _realtime_ratios),
   'languages': (_languages, _language_ratios),
   'dynamics': (_dynamics, _dynamics_ratios),
+  'fidelities': (fidelities.text, fidelities.ratios),
   'learners': (_learners, _learner_ratios),
   'observers': (_observers, _observer_ratios),
   'memory': (_memory, lambda found: {}),

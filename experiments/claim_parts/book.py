@@ -7,7 +7,7 @@ together take less than 30 minutes on two cores.
 
 from typing import Any
 
-from waggle_tasks.experiments.claim_parts import kinds
+from waggle_tasks.experiments.claim_parts import colony_book, kinds
 
 _DECOYS: dict[str, Any] = {
   'control': 'circles,diagonals,random_walk,navigation,swapped,repeated,'
@@ -270,6 +270,7 @@ CLAIMS = {
   'event-logs': kinds.Claim(
     'event-logs', kinds.ROWS, ('bench', '--check_events', '--suite=controls')
   ),
+  **colony_book.CLAIMS,
 }  # fmt: skip
 
 _RIGHT = r'^right: (\d+)/(\d+) exposures'

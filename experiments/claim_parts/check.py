@@ -19,7 +19,9 @@ from waggle_tasks.experiments.claim_parts import (
 from waggle_tasks.experiments.studies import case_rows
 
 # Launchers that leave a folder, and so are told where.
-_LEAVES = ('broadcast', 'sweep', 'link', 'suite', 'sensitivity', 'ablate')
+_LEAVES = (
+  'broadcast', 'sweep', 'link', 'suite', 'sensitivity', 'ablate', 'colony',
+)  # fmt: skip
 _MOST = 1  # The exit status of a command that ran; above, it did not.
 
 

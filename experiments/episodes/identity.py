@@ -3,9 +3,9 @@
 import hashlib
 import json
 
-from waggle_tasks import plain, scenario
+from waggle_tasks import fidelity, plain, scenario
 from waggle_tasks.agents import receivers
-from waggle_tasks.experiments.episodes import outside
+from waggle_tasks.experiments.episodes import ladder_table, outside
 from waggle_tasks.experiments.record import provenance, source_files, writer
 
 
@@ -34,5 +34,7 @@ def of(scene: scenario.Scenario, receiver_name: str, source_digest: str) -> str:
     'episode_s': scene.episode_s,
     'numbers': numbers,
   }
+  if scene.fidelity != fidelity.PIXELS:
+    parts['ladder'] = hashlib.sha256(ladder_table.PATH.read_bytes()).hexdigest()
   text = json.dumps(plain.to_plain(parts), sort_keys=True)
   return hashlib.sha256(text.encode()).hexdigest()

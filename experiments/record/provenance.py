@@ -61,6 +61,15 @@ def deciding_hashes() -> dict[str, str]:
   }
 
 
+def perception_hashes() -> dict[str, str]:
+  """Those of `source_hashes` that decide what is seen and read."""
+  return {
+    name: value
+    for name, value in source_hashes().items()
+    if not name.startswith(experiments.__name__)
+  }
+
+
 def _decides(name: str) -> bool:
   room = name.removeprefix(f'{experiments.__name__}.').partition('.')[0]
   return not name.startswith(experiments.__name__) or room in _DECIDING

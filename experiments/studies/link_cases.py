@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from waggle_tasks import errors
+from waggle_tasks import fidelity as fidelity_lib
 from waggle_tasks.experiments.record import scenario_fields
 from waggle_tasks.experiments.studies import (
   link_conditions,
@@ -33,6 +34,7 @@ class Plan:
     observers: How many observers each of them has.
     bits: What is sent in place of a payload: characters of 0 and 1, or
       'random:64' for as many that each message draws; empty for payloads.
+    fidelity: How much of each broadcast is made, see `Scenario.fidelity`.
   """
 
   schemes: Sequence[link_schemes.Scheme]
@@ -42,6 +44,7 @@ class Plan:
   broadcasts: int
   observers: int
   bits: str = ''
+  fidelity: str = fidelity_lib.PIXELS
 
   def __post_init__(self) -> None:
     for field in ('conditions', 'distances_m', 'bearings_deg'):
@@ -100,7 +103,7 @@ def _message(
     **scenario_fields.defaults(), **scheme.values, **condition.values,
     'distance_m': cell['distance_m'], 'bearing_deg': cell['bearing_deg'],
     'observers': plan.observers, 'payload': sweep_cases.RANDOM,
-    'bits': plan.bits,
+    'bits': plan.bits, 'fidelity': plan.fidelity,
   }  # fmt: skip
   samples = [sweep_cases.draw({}, base | _drawn(condition, number), number)]
   if scheme.sendings > 1:  # The same payload, and seeds that follow from one.

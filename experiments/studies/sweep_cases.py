@@ -192,4 +192,5 @@ def _seed_text(values: Mapping[str, Any], repeat: int) -> str:
   """What a case's seed is drawn from: the same whichever way it was said."""
   usual = scenario_fields.defaults()
   unusual = {n: v for n, v in sorted(values.items()) if v != usual[n]}
+  unusual.pop('fidelity', None)  # One case is the same at every level.
   return f'{cell_name(unusual)} #{repeat}'

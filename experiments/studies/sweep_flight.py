@@ -3,8 +3,9 @@
 from collections.abc import Callable, Sequence
 from typing import Any
 
+from waggle_tasks import fidelity
 from waggle_tasks.agents import receiver
-from waggle_tasks.experiments.episodes import evaluator
+from waggle_tasks.experiments.episodes import evaluator, low_level
 from waggle_tasks.experiments.episodes import rollout as rollout_lib
 from waggle_tasks.experiments.record import episode, verdicts
 from waggle_tasks.experiments.studies import (
@@ -39,10 +40,28 @@ def fly(
     shown = replay_flight.fly(case.scene, receiver_name, replays, report)
     passed = all(each.right for each in shown[-1])
     return _row(case, receiver_name, identity, *shown, passed)
+  if case.scene.fidelity != fidelity.PIXELS:
+    return _without_pictures(case, receiver_name, identity)
   onlookers = [job_progress.reporter(report)]
   rollout = rollout_lib.run(case.scene, receiver_name, onlookers)
   verdict = evaluator.evaluate(case.scene, rollout)
   return row(case, receiver_name, identity, rollout, verdict)
+
+
+def _without_pictures(
+  case: sweep_cases.Sample, receiver_name: str, identity: str
+) -> case_rows.SweepRow:
+  """A row of a level of fidelity on which nothing is flown."""
+  verdict, events = low_level.run(case.scene, receiver_name)
+  poses = case.scene.poses()
+  exposures = [
+    case_rows.Exposure.of(each, poses[each.observer], **_reading(seen))
+    for each, seen in zip(verdict.outcomes, events, strict=True)
+  ]
+  return _row(
+    case, receiver_name, identity, low_level.RENDERER, case.scene.episode_s,
+    exposures, verdict.passed,
+  )  # fmt: skip
 
 
 def row(
