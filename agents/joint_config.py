@@ -19,8 +19,9 @@ class Reading(group.Group):
     max_misfit: How far a symbol may be from what was seen, as a share of the
       squared distance to the next one: 0.25 is half-way.
     max_end: The same of END and the rest after it, beside a rest without END.
-    max_rest: How far from the hover point the dancer may rest after END, by
-      what was seen before it, as a share of how far the nearest level is.
+    max_rest: How far from the hover point the dancer may rest before START and
+      after END, by what was seen of the frame between, as a share of how far
+      the nearest level is.
     max_astray: What share of the track may be where no symbol is flown.
     max_angle_deg: Largest viewing angle to either side...
     angles: ...and how many, from one side to the other.

@@ -243,7 +243,7 @@ class JointReceiver:
       reader.again(word)
     found = reader.judged()
     symbols = tuple(map(int, word))
-    if reason := self._doubt(found, clear):
+    if reason := reading.doubt(found, clear, limits):
       return _Read(reason, symbols, clear)
     reason, bits = self._agreement.coding.judge(
       symbols, self._agreement.frame_bits, self._alphabet.size
@@ -251,31 +251,6 @@ class JointReceiver:
     angle_deg = math.degrees(found.angle_rad)
     distance_m = self._focal_px / found.scale_px
     return _Read(reason, symbols, clear, bits, angle_deg, distance_m)
-
-  def _doubt(self, found: reading.Reading, clear: float) -> str:
-    """Why a word that was read is none; empty if it may be one."""
-    limits = self._limits
-    if found.end > limits.max_end:
-      return (
-        f'what came for END was none: error {found.end:.2f} > {limits.max_end}'
-      )
-    if not found.rest_seen:
-      return 'the rest after END was not seen'
-    if found.rest > limits.max_rest:
-      return (
-        f'after END it rested at {found.rest:.0%} of the way to the next level'
-        f' > {limits.max_rest:.0%}'
-      )
-    if found.astray > limits.max_astray:
-      return f'{found.astray:.0%} of what was seen is where no symbol is flown'
-    if found.misfit > limits.max_misfit:
-      return (
-        f'what came for symbols were none: error {found.misfit:.2f} >'
-        f' {limits.max_misfit}'
-      )
-    if clear < limits.min_clear:
-      return f'two words are as likely: clear {clear:.2f} < {limits.min_clear}'
-    return ''
 
   def _accept(
     self, read: _Read, bits: str, time_s: float

@@ -5,7 +5,7 @@ import dataclasses
 
 import numpy as np
 
-from waggle_tasks.agents import slots
+from waggle_tasks.agents import joint_config, slots
 
 _SAME_M = 1e-6  # END of gestures begins where it ends, but for rounding.
 
@@ -26,6 +26,8 @@ class Reading:
       far the nearest level is; 0 for gestures, which all end there, so that
       END alone tells their end.
     rest_seen: Whether that rest was seen.
+    before: The same as `rest` of the rest before START...
+    before_seen: ...and whether that was seen.
     astray: What share of the track was where no symbol is flown.
     angle_rad: Where it was seen from.
     scale_px: Pixels of a metre at the dancer.
@@ -36,6 +38,8 @@ class Reading:
   end_seen: float
   rest: float
   rest_seen: bool
+  before: float
+  before_seen: bool
   astray: float
   angle_rad: float
   scale_px: float
@@ -62,12 +66,9 @@ def judge(
   whole = frame.samples.between(begin_s, frame.starts_s(count, poses[-1]))
   ended = frame.part(count, poses[-1])
   end_s = float(ended.weights_s.sum())
+  begun = frame.part(slots.START, poses[0])
   resting_s = ended.weights_s * (ended.times_s >= shapes.end_s)
-  middle_m = resting_s @ ended.places_m / max(resting_s.sum(), 1e-9)
-  ways_m = shapes.ends[view][:, 0] - shapes.ends[view][:, -1]
-  level_m = float(np.hypot(*ways_m.T).min())
-  aside_m = float(np.hypot(*middle_m * shapes.tell))
-  rest = aside_m / level_m if level_m > _SAME_M else 0.0
+  waiting_s = begun.weights_s * (begun.times_s < 0)
   path = shapes.ends[view, states[-1]]
   stay = float(((path - path[:1]) ** 2).sum(axis=-1).mean()) * shapes.end_s
   stay += float(((path[-1] - path[0]) ** 2).sum()) * frame.after_s
@@ -79,12 +80,64 @@ def judge(
     float(misfit / max(near, 1e-9)),
     error / max(stay, 1e-9),
     min(end_s / frame.length_s(count), 1.0),
-    rest,
+    _aside(frame, view, ended.places_m, resting_s),
     bool(resting_s.any()),
+    _aside(frame, view, begun.places_m, waiting_s),
+    bool(waiting_s.any()),
     1 - seen_s / max(float(whole.weights_s.sum()), 1e-9),
     float(shapes.angles_rad[view]),
     poses[-1].scale_px,
   )
+
+
+def doubt(found: Reading, clear: float, limits: joint_config.Reading) -> str:
+  """Why a word that was read is none; empty if it may be one.
+
+  Args:
+    found: What it stands on.
+    clear: How much nearer it is than any other, see `soft.decide`.
+    limits: When what was seen is a frame.
+  """
+  if found.end > limits.max_end:
+    return (
+      f'what came for END was none: error {found.end:.2f} > {limits.max_end}'
+    )
+  for when, seen, aside in (
+    ('before START', found.before_seen, found.before),
+    ('after END', found.rest_seen, found.rest),
+  ):
+    if not seen:
+      return f'the rest {when} was not seen'
+    if aside > limits.max_rest:
+      return (
+        f'{when} it rested at {aside:.0%} of the way to the next level'
+        f' > {limits.max_rest:.0%}'
+      )
+  if found.astray > limits.max_astray:
+    return f'{found.astray:.0%} of what was seen is where no symbol is flown'
+  if found.misfit > limits.max_misfit:
+    return (
+      f'what came for symbols were none: error {found.misfit:.2f} >'
+      f' {limits.max_misfit}'
+    )
+  if clear < limits.min_clear:
+    return f'two words are as likely: clear {clear:.2f} < {limits.min_clear}'
+  return ''
+
+
+def _aside(
+  frame: slots.Slots,
+  view: int,
+  places_m: np.ndarray,  # (T, 2)
+  weights_s: np.ndarray,  # (T,)
+) -> float:
+  """How far from the hover point a rest is, in ways to the nearest level."""
+  shapes = frame.shapes
+  ways_m = shapes.ends[view][:, 0] - shapes.ends[view][:, -1]
+  level_m = float(np.hypot(*ways_m.T).min())
+  middle_m = weights_s @ places_m / max(weights_s.sum(), 1e-9)
+  aside_m = float(np.hypot(*middle_m * shapes.tell))
+  return aside_m / level_m if level_m > _SAME_M else 0.0
 
 
 def _nearest(paths: np.ndarray, own: int) -> float:

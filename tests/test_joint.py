@@ -147,6 +147,17 @@ def test_a_decoy_of_the_languages_own_symbols_is_no_message(
   assert not outcome.failures
 
 
+def test_a_start_that_does_not_begin_at_rest_opens_no_frame() -> None:
+  # Every symbol is danced twice, so that a second START begins where the first
+  # one ends, at the lowest level; with few images it looks like a whole one.
+  outcome, _ = fly(
+    language='swift', control='repeated', seed=1489973539, distance_m=2.2,
+    sensor=sensor.Sensor(dropped_share=0.3),
+  )  # fmt: skip
+  assert outcome.decoded is None
+  assert not outcome.failures
+
+
 @pytest.mark.slow
 def test_the_papers_own_dance_is_read_as_a_whole_too() -> None:
   outcome, _ = fly(payload='101101')
