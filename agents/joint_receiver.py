@@ -33,6 +33,7 @@ from waggle_tasks.protocol.symbols import Symbol
 
 _USUAL_M = 1.3  # A distance before any is known.
 _LATE_S = 0.2  # What a frame may be late.
+_NOTICED_S = 10.0  # How late a first motion may be noticed.
 _ROUNDS = 3  # Of deciding a word and looking again.
 
 
@@ -184,11 +185,13 @@ class JointReceiver:
         self._forget()
       if self.track.valid:
         self._rests.append(time_s)
-      while self._rests and time_s - self._rests[0] > self._limits.start_rest_s:
+      while self._rests and time_s - self._rests[0] > _NOTICED_S:
         self._rests.popleft()
       return ()
     if not self._history:
-      before = [at for at in self._rests if at < tracks[0].time_s]
+      moved_s = tracks[0].time_s
+      since_s = moved_s - self._limits.start_rest_s
+      before = [at for at in self._rests if since_s <= at < moved_s]
       self._history.rest(before, anchor_px)
     for track in tracks:
       self._history.add(track)
