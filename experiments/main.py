@@ -24,6 +24,7 @@ COMMANDS = {
   'bench': 'Measure images, the loop and whole broadcasts on this machine.',
   'sweep': 'Fly a grid of scenarios and map where messages are read.',
   'crossings': 'Fly random crossings of vehicles that avoid each other.',
+  'board': 'Rank receivers over tiers of scenes, and merge such boards.',
   'link': 'Compare languages, codes and repetition by what they deliver.',
   'drift': 'Show how vehicles hover, beside what was measured.',
   'languages': 'Show how long, how quick and how far apart languages are.',

@@ -13,7 +13,9 @@ ROOT = pathlib.Path(__file__).parents[1]
 
 SIMULATOR = frozenset({'dm_control', 'dm_env', 'mujoco'})
 # Modules beside the rooms that hold plain values and may be used by all.
-OPEN = ('_version', 'appearance', 'errors', 'msh', 'runtime', 'sensor')
+OPEN = (
+  '_version', 'appearance', 'doors', 'errors', 'msh', 'runtime', 'sensor',
+)  # fmt: skip
 
 
 @dataclasses.dataclass(frozen=True)
