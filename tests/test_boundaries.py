@@ -268,10 +268,12 @@ def run_python(code: str) -> str:
 # What needs a simulator only to measure, film or fly.
 SIMULATING = frozenset({'episodes', 'bench_parts'})
 SIMULATING_MODULES = frozenset({
-  'studies.link_study', 'studies.replay_flight', 'studies.runner',
+  'studies.board_flight', 'studies.board_study', 'studies.link_study',
+  'studies.replay_flight', 'studies.runner',
   'studies.spoilers', 'studies.suite_case', 'studies.suite_study',
   'studies.sweep_flight', 'studies.sweep_study',
-  'video.film', 'video.lens', 'video.shots',
+  'video.board_films', 'video.board_pictures', 'video.film', 'video.lens',
+  'video.shots',
 })  # fmt: skip
 IMPORT_ALL = """
 import importlib, sys

@@ -81,20 +81,30 @@ def scenes(
     for language in scene.languages:
       base = {
         **scenario_fields.defaults(), 'observers': 1,
-        'payload': sweep_cases.RANDOM, 'language': language, **scene.values,
-        'seed': _seed(tier, scene.name, referee),
+        'payload': sweep_cases.RANDOM, 'language': language,
+        'jitter_m': board_tiers.TIERS[tier].jitter_m, **scene.values,
+        'seed': _drawn(tier, scene.name, referee),
       }  # fmt: skip
       for number in range(board_tiers.BROADCASTS[language]):
+        if language == board_tiers.PAPER:
+          base['initial_hover_s'] = _hover_s(tier, scene.name, number, referee)
         sample = sweep_cases.draw({}, base, number)
         cell = {TIER: tier, LANGUAGE: language, SCENE: scene.name}
         out.append((language, dataclasses.replace(sample, cell=cell)))
   return out
 
 
-def _seed(tier: str, scene: str, referee: int | None) -> int:
-  """What the seeds of a scene follow from; nobody guesses a private one."""
-  text = f'board {board_tiers.VERSION} {tier} {scene} {referee}'
+def _drawn(*of: object) -> int:
+  """32 bits that follow from some words; nobody guesses a referee's."""
+  text = ' '.join(map(str, ('board', board_tiers.VERSION, *of)))
   return int.from_bytes(hashlib.sha256(text.encode()).digest()[:4], 'big')
+
+
+def _hover_s(*of: object) -> float:
+  """The first hover of a dance in the paper's language."""
+  least_s, most_s = board_tiers.HOVER_S
+  share = _drawn('hover', *of) / 2**32
+  return round(least_s + share * (most_s - least_s), 2)
 
 
 def cases(

@@ -44,13 +44,18 @@ class Tier:
     text: What it asks of a receiver, for people.
     scenes: Its scenes.
     shown: Names of those that its picture shows.
+    jitter_m: How far vehicles are from their places, along each axis.
   """
 
   text: str
   scenes: tuple[Scene, ...]
   shown: tuple[str, ...]
+  jitter_m: float = 0.03  # So that the dancer is not in the middle.
 
 
+# In the paper's language the first hover is drawn, so that nobody learns when a
+# dance begins; other languages have theirs.
+HOVER_S = 4.0, 7.0
 # How often a scene is danced in each language: a dance of the paper's takes
 # fifteen times as long.
 BROADCASTS = {PAPER: 1, SWIFT: 3, GENTLE: 1}
@@ -67,7 +72,7 @@ CAMERAS: Mapping[str, Mapping[str, Any]] = {
   'few photons': {'photons': 200.0},
   'exposure': {'exposure_s': 0.03},
   'flicker': {'flicker_share': 0.1, 'flicker_hz': 48.0},
-  'light doubled': {'step_gain': 2.0, 'step_s': 3.0},
+  'light doubled': {'step_gain': 2.0, 'step_s': 5.0},
   'images lost': {'dropped_share': 0.3},
   'images repeated': {'repeated_share': 0.2},
   'images late': {'late_frames': 5},
@@ -104,6 +109,7 @@ TIERS: Mapping[str, Tier] = {
       Scene('a symbol too many', {'control': 'seven_bits'}),
     ),
     ('one observer', 'five, to 40 degrees', '1.6 m', 'line'),
+    jitter_m=0.0,
   ),
   'envelope': Tier(
     'near and far, from the front and from the side, in calm and in noise',
