@@ -27,7 +27,7 @@ def find(name: str, **changes: object) -> scenario.Scenario:
       or if a value breaks a rule.
   """
   error = scenario.ScenarioError
-  usual = SCENARIOS.get(name) or _offered(name)
+  usual = SCENARIOS[name] if name in SCENARIOS else _offered(name)
   fields = [field.name for field in dataclasses.fields(scenario.Scenario)]
   values: dict[str, Any] = changes
   for field in values:

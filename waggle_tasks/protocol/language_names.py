@@ -21,7 +21,8 @@ def find(name: str) -> languages.Language:
     DoorError: if a package offers the name and it cannot be used.
   """
   stem, colon, changes = name.partition(':')
-  language = languages.LANGUAGES.get(stem) or _offered(stem)
+  offered = _offered(stem)
+  language = offered or languages.LANGUAGES[stem]
   if not colon:
     return language
   code = dataclasses.replace(language.coding, **_changes(name, changes))
@@ -29,8 +30,8 @@ def find(name: str) -> languages.Language:
   return dataclasses.replace(language, coding=code)
 
 
-def _offered(name: str) -> languages.Language:
-  """A language from outside."""
+def _offered(name: str) -> languages.Language | None:
+  """A language from outside; None for one of this project."""
   known = languages.LANGUAGES
   found = doors.find('languages', name, known)
   if isinstance(found, languages.Language):
@@ -40,11 +41,9 @@ def _offered(name: str) -> languages.Language:
       f'`language` {name!r} must be a languages.Language: its package offers'
       f' {found!r}'
     )
-  checks.choice(
-    'language', name, [*known, *doors.names('languages')],
-    languages.LanguageError,
-  )  # fmt: skip
-  raise languages.LanguageError(f'`language` must be known: got {name!r}')
+  choices = [*known, *doors.names('languages')]
+  checks.choice('language', name, choices, languages.LanguageError)
+  return None
 
 
 def _changes(name: str, text: str) -> dict[str, Any]:
