@@ -29,9 +29,10 @@ from waggle_tasks.experiments.studies import (
 )
 
 ARGUMENTS = '[FOLDER ...]'
-# Of a core, on the machine of docs/performance.md: for an episode, and for a
-# simulated second of one observer with its receiver.
-_START_S, _SECOND_S = 2.0, 0.09
+# Of a core: for an episode, and for a simulated second of one observer with its
+# receiver, whose camera stands still or moves: then all of an image is drawn,
+# and what is seen is laid over what was seen before.
+_START_S, _STILL_S, _MOVING_S = 2.0, 0.09, 0.7
 
 _TIERS = flags.DEFINE_list(
   'tiers', [*board_tiers.TIERS], f'Some of {", ".join(board_tiers.TIERS)}.'
@@ -40,6 +41,10 @@ _RECEIVERS = flags.DEFINE_list(
   'receivers', ['klt', 'view_bank', 'joint'],
   f'Receivers with a comma between them. Each: {receiver_flag.RULE}'
   ' Numbers of one receiver are parted by semicolons here.',
+)  # fmt: skip
+_LANGUAGES = flags.DEFINE_list(
+  'languages', [*board_tiers.LANGUAGES],
+  f'Some of {", ".join(board_tiers.LANGUAGES)}.',
 )  # fmt: skip
 _REFEREE = flags.DEFINE_integer(
   'referee', None, 'A number from which private seeds follow; unset, seeds are'
@@ -60,7 +65,9 @@ def main(argv: Sequence[str]) -> int:
   if argv[1:]:
     raise flags.Error(f'takes only flags, --name=value: got {argv[1]!r}.')
   readers = [each.replace(';', ',') for each in _RECEIVERS.value]
-  plan = board_cases.Plan(_TIERS.value, readers, _REFEREE.value)
+  plan = board_cases.Plan(
+    _TIERS.value, readers, _REFEREE.value, _LANGUAGES.value
+  )
   cases, unread = board_cases.cases(plan)
   # Imported here: to merge boards, no simulator is needed.
   from waggle_tasks.experiments.studies import board_study, runner
@@ -93,7 +100,10 @@ def main(argv: Sequence[str]) -> int:
 
 def _core_s(case: sweep_cases.Sample) -> float:
   """How long a core takes for a case, about."""
-  return _START_S + _SECOND_S * case.scene.episode_s * case.scene.observers
+  scene = case.scene
+  moves = scene.drift.observer_hover != 'none' or scene.estimator != 'none'
+  second_s = _MOVING_S if moves or scene.air.wind_mps else _STILL_S
+  return _START_S + second_s * scene.episode_s * scene.observers
 
 
 def _merge(names: Sequence[str], folder: pathlib.Path) -> int:

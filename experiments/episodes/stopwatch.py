@@ -56,6 +56,7 @@ def watch(reader: receiver.Receiver) -> Any:  # noqa: ANN401
 
 def put(team: observer_agent.Team) -> list[Timed]:
   """Watches the receivers of a team that has not begun."""
-  for agent in team.agents:
-    agent.receiver = watch(agent.receiver)
-  return [agent.receiver for agent in team.agents]
+  watches = [watch(agent.receiver) for agent in team.agents]
+  for agent, watched in zip(team.agents, watches, strict=True):
+    agent.receiver = watched
+  return watches

@@ -74,7 +74,10 @@ class Result:
     asked = [each for each in row.outcomes if each.expected is not None]
     times_ms = [each.read_ms for each in row.outcomes if each.read_ms]
     return cls(
-      *(row.cell[name] for name in board_cases.CELL),
+      row.cell[board_cases.RECEIVER],
+      row.cell[board_cases.TIER],
+      row.cell[board_cases.LANGUAGE],
+      row.cell[board_cases.SCENE],
       row.repeat,
       row.identity,
       hashlib.sha256(text.encode()).hexdigest()[:16],

@@ -9,7 +9,7 @@ import textwrap
 
 from waggle_tasks.experiments.machine import table
 from waggle_tasks.experiments.results import board_file, intervals
-from waggle_tasks.experiments.studies import board_tiers
+from waggle_tasks.experiments.studies import board_cases, board_tiers
 
 ALL = 'all'
 _NOTHING = '-'
@@ -128,7 +128,7 @@ def lines(
 def _lines(
   board: board_file.Board,
   own: Sequence[board_file.Result],
-  unread: Sequence[object],
+  unread: Sequence[board_cases.Unread],
   tier: str,
   language: str,
 ) -> list[tuple[str, ...]]:
@@ -151,7 +151,7 @@ def _lines(
 
 def pairs(board: board_file.Board) -> list[tuple[str, ...]]:
   """The lines of the table of paired tests, of all tiers and each."""
-  out = []
+  out: list[tuple[str, ...]] = []
   names = tiers(board)
   for one, other in itertools.combinations(board.receivers, 2):
     for tier in names if len(names) == 1 else (*names, ALL):

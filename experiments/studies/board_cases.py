@@ -24,15 +24,17 @@ class Plan:
     tiers: Names of `board_tiers.TIERS`.
     receivers: Who reads, as `receivers.make` takes them.
     referee: The number from which private seeds follow; None for public ones.
+    languages: Those of `board_tiers.LANGUAGES` that are danced.
   """
 
   tiers: Sequence[str]
   receivers: Sequence[str]
   referee: int | None = None
+  languages: Sequence[str] = board_tiers.LANGUAGES
 
   def __post_init__(self) -> None:
     error = board_tiers.BoardError
-    for field in ('tiers', 'receivers'):
+    for field in ('tiers', 'receivers', 'languages'):
       values = getattr(self, field)
       if not values or len({*values}) < len(values):
         raise error(
@@ -40,6 +42,8 @@ class Plan:
         )
     for name in self.tiers:
       checks.choice('tiers', name, [*board_tiers.TIERS], error)
+    for name in self.languages:
+      checks.choice('languages', name, board_tiers.LANGUAGES, error)
     if self.referee is not None:
       checks.integer('referee', self.referee, 1, _MOST, error)
 
@@ -121,7 +125,9 @@ def cases(
   unread: dict[tuple[str, str, str], Unread] = {}
   flaws: dict[tuple[str, str], str] = {}
   for tier in plan.tiers:
-    samples = scenes(tier, plan.referee)
+    samples = [
+      each for each in scenes(tier, plan.referee) if each[0] in plan.languages
+    ]
     for name in plan.receivers:
       for language, sample in samples:
         if (name, language) not in flaws:
@@ -132,8 +138,9 @@ def cases(
           cell = {RECEIVER: name, **sample.cell}
           out.append(dataclasses.replace(sample, cell=cell, receiver=name))
   if not out:
+    why = [*dict.fromkeys(each.reason for each in unread.values())]
     raise board_tiers.BoardError(
-      f'nothing can be read: {next(iter(unread.values())).reason}'
+      f'nothing can be read: {why[0] if why else "no tier is so danced"}'
     )
   return out, [*unread.values()]
 

@@ -13,7 +13,7 @@ from typing import Any
 from waggle_tasks import errors, scenario
 
 VERSION = 1
-PAPER, SWIFT, GENTLE = scenario.PAPER, 'swift', 'gentle'
+LANGUAGES = PAPER, SWIFT, GENTLE = scenario.PAPER, 'swift', 'gentle'
 RECORDINGS = 'recordings'
 
 

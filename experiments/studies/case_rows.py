@@ -211,7 +211,7 @@ def table(row: SuiteRow | SweepRow) -> dict[str, Any]:
   """A row as plain data, without what is told of other kinds of rows."""
   whole = encoding.stamped(row)
   for each in whole['outcomes']:
-    unlike = _OF_FLIGHTS if each.get('spoilt') else _OF_REPLAYS
+    unlike = [*(_OF_FLIGHTS if each.get('spoilt') else _OF_REPLAYS)]
     if each.get('read_ms') is None:
       unlike += _OF_BOARDS
     for name in unlike:

@@ -89,6 +89,7 @@ def test_what_a_receiver_cannot_read_is_told_and_not_flown() -> None:
     ({'tiers': ['crowds']}, 'Did you mean crowd'),
     ({'tiers': []}, '`tiers` must name each once, and one the least'),
     ({'receivers': ['klt', 'klt']}, '`receivers` must name each once'),
+    ({'languages': ['swoft']}, 'Did you mean swift'),
     ({'referee': 0}, '`referee` must be between 1 and'),
   ],
 )
