@@ -86,7 +86,12 @@ def main(argv: Sequence[str]) -> int:
       f' {core_s / workers / 60:.0f} min'
     )
 
-  command = provenance.command_line('board', launch.given_flags())
+  # Files do not tell the number of a referee.
+  given = [
+    '--referee=NUMBER' if each.startswith('--referee=') else each
+    for each in launch.given_flags()
+  ]
+  command = provenance.command_line('board', given)
   study = board_study.Board(cases, board_films.Films(), tell)
   rows = runner.run(study, folder, engine, command)
   board_pictures.draw(

@@ -232,17 +232,7 @@ def read_scenario(path: pathlib.Path) -> scenario.Scenario:
 def made(
   kind: type[_Value], table: object, place: object, name: str = ''
 ) -> _Value:
-  """A value of plain data from a file.
-
-  Args:
-    kind: What it is.
-    table: The data.
-    place: Where they are from, for people.
-    name: What of it they are, for people; empty for all.
-
-  Raises:
-    ArchiveError: if they are damaged, or of a newer program.
-  """
+  """A value of plain data from a file; an ArchiveError if damaged."""
   try:
     return plain.from_plain(kind, table, name)
   except plain.UnknownFieldError as error:
