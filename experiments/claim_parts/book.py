@@ -264,6 +264,9 @@ CLAIMS = {
     'dance', kinds.UNCHECKED,
     detail='what is learned differs a little between kinds of processors',
   ),
+  'board': kinds.Claim(
+    'board', kinds.UNCHECKED, detail='its times are those of one machine'
+  ),
   'pictures': kinds.Claim(
     'pictures', kinds.UNCHECKED, detail='a test compares pictures each run'
   ),
