@@ -37,7 +37,8 @@ class Result:
     moved: How many left their place without a right message.
     observers: How many there were.
     read_ms: What the receiver took for an image: the median.
-    acquired_s: How long after the first motion each observer held the dancer.
+    acquired_s: How long after the first motion each observer held the dancer;
+      empty where nobody danced, or nobody knows where the dancer is.
   """
 
   receiver: str
@@ -87,13 +88,19 @@ class Result:
       sum(each.unauthorised for each in row.outcomes),
       len(row.outcomes),
       statistics.median(times_ms or [0.0]),
-      tuple(each.acquired_s for each in row.outcomes),
+      _acquired_s(row),
     )
 
 
 def _film(row: case_rows.SweepRow) -> str:
   is_film = row.cell[board_cases.TIER] == board_tiers.RECORDINGS
   return row.cell[board_cases.SCENE] if is_film else ''
+
+
+def _acquired_s(row: case_rows.SweepRow) -> tuple[float | None, ...]:
+  if _film(row) or row.scenario['control'] == 'no_send':
+    return ()
+  return tuple(each.acquired_s for each in row.outcomes)
 
 
 @dataclasses.dataclass(frozen=True)

@@ -69,8 +69,7 @@ class Tally:
   def of(cls, results: Iterable[board_file.Result]) -> 'Tally':
     """Counts results, those of a broadcast once."""
     kept = [*{each.broadcast: each for each in results}.values()]
-    times = [t for each in kept if each.tier != board_tiers.RECORDINGS
-             for t in each.acquired_s]  # fmt: skip
+    times = [time_s for each in kept for time_s in each.acquired_s]
     held = [time_s for time_s in times if time_s is not None]
     return cls(
       len(kept),

@@ -145,7 +145,7 @@ TIERS: Mapping[str, Tier] = {
         {'control': 'run_together', **CAMERAS['black-outs']},
       ),
     ),
-    ('small', 'wide', 'few photons', 'light doubled'),
+    ('small', 'wide', 'few photons', 'narrow, 2 m'),
   ),
   'room': Tier(
     'rooms full of things, sunlight and shadows',
