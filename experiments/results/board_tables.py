@@ -114,7 +114,9 @@ def lines(
   for name in names:
     own = [each for each in board.results if each.tier == name]
     unread = [each for each in board.unread if each.tier == name]
-    for language in dict.fromkeys(each.language for each in (*own, *unread)):
+    spoken = [each.language for each in own]
+    spoken += [each.language for each in unread]
+    for language in dict.fromkeys(spoken):
       out += _lines(board, own, unread, name, language)
   if tier is None and len(names) > 1:
     for receiver in board.receivers:

@@ -138,9 +138,9 @@ def cases(
           cell = {RECEIVER: name, **sample.cell}
           out.append(dataclasses.replace(sample, cell=cell, receiver=name))
   if not out:
-    why = [*dict.fromkeys(each.reason for each in unread.values())]
+    reasons = [each.reason for each in unread.values()]
     raise board_tiers.BoardError(
-      f'nothing can be read: {why[0] if why else "no tier is so danced"}'
+      f'nothing can be read: {reasons[0] if reasons else "no tier is so danced"}'
     )
   return out, [*unread.values()]
 
