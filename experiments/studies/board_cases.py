@@ -138,10 +138,8 @@ def cases(
           cell = {RECEIVER: name, **sample.cell}
           out.append(dataclasses.replace(sample, cell=cell, receiver=name))
   if not out:
-    reasons = [each.reason for each in unread.values()]
-    raise board_tiers.BoardError(
-      f'nothing can be read: {reasons[0] if reasons else "no tier is so danced"}'
-    )
+    reasons = [*(each.reason for each in unread.values()), 'none is so danced']
+    raise board_tiers.BoardError(f'nothing can be read: {reasons[0]}')
   return out, [*unread.values()]
 
 
