@@ -214,8 +214,7 @@ CLAIMS = {
     ),
   ),
   'link-codes': kinds.Claim(
-    'link-codes', kinds.UNCHECKED,
-    detail='ten million messages each take minutes',
+    'link-codes', kinds.UNCHECKED, detail='ten million messages take minutes'
   ),
   'paper': kinds.Claim(
     'paper', kinds.ROWS,
@@ -254,15 +253,13 @@ CLAIMS = {
   ),
   'symbols': kinds.Claim('symbols', kinds.UNCHECKED, detail='takes minutes'),
   'timings': kinds.Claim(
-    'timings', kinds.UNCHECKED,
-    detail='times and memory, which differ between runs',
+    'timings', kinds.UNCHECKED, detail='times, memory: they differ each run'
   ),
   'learners': kinds.Claim(
     'learners', kinds.UNCHECKED, detail='times, which differ between runs'
   ),
   'dance': kinds.Claim(
-    'dance', kinds.UNCHECKED,
-    detail='what is learned differs a little between kinds of processors',
+    'dance', kinds.UNCHECKED, detail='processors differ a little in learning'
   ),
   'board': kinds.Claim(
     'board', kinds.UNCHECKED, detail='its times are those of one machine'
