@@ -4,6 +4,7 @@ from collections.abc import Callable, Sequence
 import inspect
 from typing import Any, Protocol
 
+from waggle_tasks import doors
 from waggle_tasks.agents import config as config_lib
 from waggle_tasks.agents import (
   description,
@@ -51,8 +52,9 @@ def make(
   """Makes a receiver at the beginning of an episode.
 
   Args:
-    name: One of `RECEIVERS`, or a class of one's own by its place,
-      'package.module:Class'; as it is ('klt') or with parts of its
+    name: One of `RECEIVERS`, one that an installed package offers, see
+      `doors`, or a class of one's own by its place, 'package.module:Class'; as
+      it is ('klt') or with parts of its
       configuration changed ('klt:corner_quality=0.1,separators=off').
     agreement: What both sides know.
 
@@ -80,14 +82,17 @@ def configured(name: str) -> tuple[Maker, object]:
   Raises:
     ReceiverError: if the name, the module, the class or what is changed is not
       known, or a value is not of its type.
+    DoorError: if a package offers the name and it cannot be used.
   """
   made: Any
   kind, _, changes = name.partition(':')
-  if kind in RECEIVERS:
-    made = RECEIVERS[kind]
+  offered = doors.find('receivers', kind, RECEIVERS)
+  if kind in RECEIVERS or offered is not None:
+    made = RECEIVERS.get(kind, offered)
     outsiders.check(made, kind)
   else:
-    made, changes = outsiders.find(kind, changes, [*RECEIVERS])
+    known = [*RECEIVERS, *doors.names('receivers')]
+    made, changes = outsiders.find(kind, changes, known)
   return made, configure(changes, made.DEFAULT)
 
 

@@ -45,18 +45,22 @@ def add_material(room: mjcf.RootElement, kind: str) -> mjcf.Element:
   )
 
 
-def texture(size_px: int = 512) -> np.ndarray:
+def texture(
+  size_px: int = 512, seed: int = _SEED, things: int = _THINGS
+) -> np.ndarray:
   """Draws the texture.
 
   Args:
     size_px: Its width and height.
+    seed: Each draws another one.
+    things: How many are on it.
 
   Returns:
     (size_px, size_px, 3) uint8 RGB.
   """
-  rng = np.random.RandomState(_SEED)
+  rng = np.random.RandomState(seed)
   pixels = np.full((size_px, size_px, 3), (104.0, 118.0, 130.0))
-  for _ in range(_THINGS):
+  for _ in range(things):
     # Half sizes from a hundredth to a twelfth of the whole, small ones first.
     half_px = np.ceil(size_px * 0.01 * 8.0 ** rng.uniform(0, 1, 2)).astype(int)
     middle = rng.randint(0, size_px, 2)

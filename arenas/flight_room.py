@@ -7,7 +7,14 @@ from dm_control import composer, mjcf
 import numpy as np
 
 from waggle_tasks import appearance, msh, runtime
-from waggle_tasks.arenas import bounds, clutter, layouts, scenery, shared_views
+from waggle_tasks.arenas import (
+  bounds,
+  clutter,
+  furniture,
+  layouts,
+  scenery,
+  shared_views,
+)
 from waggle_tasks.arenas import sun as sun_lib
 from waggle_tasks.protocol import agreement as agreement_lib
 
@@ -72,6 +79,10 @@ class FlightRoom(composer.Arena):
     self._set_options()
     self._add_room()
     self._add_lights()
+    if self._look.furniture:
+      furniture.add(
+        self._mjcf_root, self._look.furniture, self._look.brightness
+      )
     self._views = shared_views.SharedViews(
       self._mjcf_root, agreement.hover_height_m
     )

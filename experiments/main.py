@@ -24,6 +24,7 @@ COMMANDS = {
   'bench': 'Measure images, the loop and whole broadcasts on this machine.',
   'sweep': 'Fly a grid of scenarios and map where messages are read.',
   'crossings': 'Fly random crossings of vehicles that avoid each other.',
+  'board': 'Rank receivers over tiers of scenes, and merge such boards.',
   'link': 'Compare languages, codes and repetition by what they deliver.',
   'ladder': 'Measure levels of fidelity on pictures and show how they agree.',
   'colony': 'Let swarms choose a site by dancing, beside published models.',

@@ -13,7 +13,9 @@ ROOT = pathlib.Path(__file__).parents[1]
 
 SIMULATOR = frozenset({'dm_control', 'dm_env', 'mujoco'})
 # Modules beside the rooms that hold plain values and may be used by all.
-OPEN = ('_version', 'appearance', 'errors', 'msh', 'runtime', 'sensor')
+OPEN = (
+  '_version', 'appearance', 'doors', 'errors', 'msh', 'runtime', 'sensor',
+)  # fmt: skip
 
 
 @dataclasses.dataclass(frozen=True)
@@ -266,11 +268,13 @@ def run_python(code: str) -> str:
 # What needs a simulator only to measure, film or fly.
 SIMULATING = frozenset({'episodes', 'bench_parts'})
 SIMULATING_MODULES = frozenset({
-  'studies.ladder_flight', 'studies.ladder_study',
-  'studies.link_study', 'studies.replay_flight', 'studies.runner',
+  'studies.board_flight', 'studies.board_study', 'studies.ladder_flight',
+  'studies.ladder_study', 'studies.link_study', 'studies.replay_flight',
+  'studies.runner',
   'studies.spoilers', 'studies.suite_case', 'studies.suite_study',
   'studies.sweep_flight', 'studies.sweep_study',
-  'video.film', 'video.lens', 'video.shots',
+  'video.board_films', 'video.board_pictures', 'video.film', 'video.lens',
+  'video.shots',
 })  # fmt: skip
 IMPORT_ALL = """
 import importlib, sys

@@ -19,6 +19,7 @@ DISTURBANCES = {
   'bystanders': {'surroundings': Around(bystanders=4)},
   'occluder': {'surroundings': Around(occluder_every_s=5, occluder_mps=1.0)},
   'clutter': {'appearance': Look(floor='clutter', walls='clutter')},
+  'furniture': {'appearance': Look(furniture=3)},
   'fixed sun': {'appearance': Look(sun='fixed')},
   'moving sun': {'appearance': Look(sun='moving')},
   'drift': {'drift': drift.Drift(0.005, 0.005, 0.3)},

@@ -24,6 +24,8 @@ class Appearance:
     walls: The walls and the ceiling of the room, one of `WALLS`.
     sun: A low sun, one of `SUNS`; vehicles have shadows on the floor then,
       which observers see too. A moving one takes a minute for its swing.
+    furniture: Seed of what stands and hangs along the walls: tables, shelves,
+      boxes, pictures, and windows with their light; 0 for nothing.
     brightness: Scales every light, 0.1 to 2; 1 is the room as designed.
     shadows: Whether the main light casts shadows in the shared views; the
       observers' own images never show those.
@@ -32,6 +34,7 @@ class Appearance:
   floor: str = 'honeycomb'
   walls: str = 'plain'
   sun: str = 'none'
+  furniture: int = 0
   brightness: float = 1.0
   shadows: bool = False
 
@@ -39,6 +42,7 @@ class Appearance:
     checks.choice('floor', self.floor, FLOORS, AppearanceError)
     checks.choice('walls', self.walls, WALLS, AppearanceError)
     checks.choice('sun', self.sun, SUNS, AppearanceError)
-    checks.settle_numbers(self, {'brightness': (0.1, 2)}, AppearanceError)
+    limits = {'brightness': (0.1, 2), 'furniture': (0, 2**32 - 1)}
+    checks.settle_numbers(self, limits, AppearanceError)
     shadows = checks.switch('shadows', self.shadows, AppearanceError)
     checks.settle(self, 'shadows', shadows)

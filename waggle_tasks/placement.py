@@ -1,11 +1,11 @@
 """Where the vehicles of a scenario begin, and where its message leads them."""
 
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from waggle_tasks import errors
+from waggle_tasks import doors, errors
 from waggle_tasks.arenas import bounds, layouts
 from waggle_tasks.protocol import checks, flight
 from waggle_tasks.tasks import safety
@@ -20,7 +20,7 @@ _DETOUR_M = 0.3  # How far those who avoid come from their ways, about.
 def poses(scene: 'scenario.Scenario') -> dict[str, layouts.Pose]:
   """See `Scenario.poses`."""
   out = {'performer': layouts.performer_pose()}
-  places = _layout(scene).poses(scene.observers)
+  places = layout(scene).poses(scene.observers)
   if len(places) != scene.observers:
     raise errors.ScenarioError(
       f'`layout` must give {scene.observers} poses: got {len(places)}'
@@ -36,18 +36,42 @@ def poses(scene: 'scenario.Scenario') -> dict[str, layouts.Pose]:
   return out
 
 
-def _layout(scene: 'scenario.Scenario') -> layouts.Layout:
-  layout = scene.layout
-  if not isinstance(layout, str) and callable(getattr(layout, 'poses', None)):
-    return layout
-  checks.choice('layout', layout, LAYOUTS, errors.ScenarioError)
-  if layout == 'arc':
+def layout(scene: 'scenario.Scenario') -> layouts.Layout:
+  """What places the observers of a scenario.
+
+  Raises:
+    ScenarioError: if it is not known, or no layout.
+    DoorError: if a package offers its name and it cannot be used.
+  """
+  named = scene.layout
+  if isinstance(named, str) and named not in LAYOUTS:
+    named = _offered(named)
+  if not isinstance(named, str) and callable(getattr(named, 'poses', None)):
+    return named
+  checks.choice('layout', named, LAYOUTS, errors.ScenarioError)
+  if named == 'arc':
     return layouts.Arc(
       scene.distance_m,
       math.radians(scene.half_span_deg),
       math.radians(scene.bearing_deg),
     )
   return layouts.Line(scene.distance_m, scene.spacing_m)
+
+
+def _offered(name: str) -> layouts.Layout:
+  """A layout from outside: one that a package offers, or what makes one."""
+  found: Any = doors.find('layouts', name, LAYOUTS)
+  if found is None:
+    checks.choice(
+      'layout', name, [*LAYOUTS, *doors.names('layouts')], errors.ScenarioError
+    )
+  made = found() if isinstance(found, type) else found
+  if callable(getattr(made, 'poses', None)):
+    return made
+  raise errors.ScenarioError(
+    f'`layout` {name!r} must be a layout with poses(count): its package offers'
+    f' {found!r}'
+  )
 
 
 def reach_m(scene: 'scenario.Scenario') -> float:

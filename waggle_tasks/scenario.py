@@ -48,8 +48,8 @@ class Scenario:
     control: What is sent, and to whom: 'none' is a nominal broadcast; from
       'circles' on the performer flies what is no message. One of `CONTROLS`.
     observers: How many observers, 1 to 64.
-    layout: Where observers stand: one of `LAYOUTS`, or in Python a
-      `layouts.Layout` of your own.
+    layout: Where observers stand: one of `LAYOUTS`, one that an installed
+      package offers, or in Python a `layouts.Layout` of your own.
     distance_m: Radius of the arc, or distance of the line, 0.2 to 4 m.
     half_span_deg: Angle from the middle of the arc to its end, 0 to 180
       degrees.

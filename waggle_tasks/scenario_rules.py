@@ -1,9 +1,10 @@
 """What the values of a scenario must be, each alone and beside the others."""
 
+from collections.abc import Sequence
 import dataclasses
 from typing import TYPE_CHECKING
 
-from waggle_tasks import errors, fidelity, placement, spoken
+from waggle_tasks import doors, errors, fidelity, placement, spoken
 from waggle_tasks.arenas import bounds
 from waggle_tasks.entities import optics
 from waggle_tasks.protocol import checks, controls, limits
@@ -38,7 +39,7 @@ def check(scene: 'scenario.Scenario') -> None:
         f'`{each.name}` must be a {type(each.default).__name__}: got {value!r}'
       )
   for field, choices in _CHOICES.items():
-    checks.choice(field, getattr(scene, field), choices, errors.ScenarioError)
+    _check_choice(field, getattr(scene, field), choices)
   _check_dynamics(scene)
   _check_numbers(scene)
   limits.check_motions(scene.agreement.motions, limits.LIMITS[scene.dynamics])
@@ -47,6 +48,15 @@ def check(scene: 'scenario.Scenario') -> None:
   scene.surroundings.check(scene.poses(), placement.reach_m(scene))
   placement.check_slots(scene)
   fidelity.check(scene)
+
+
+def _check_choice(field: str, value: str, choices: Sequence[str]) -> None:
+  """Refuses what is none of the choices, also where a package offers it."""
+  try:
+    checks.choice(field, value, choices, errors.ScenarioError)
+  except errors.ScenarioError as error:
+    more = doors.closed(field, str(value)) if field == 'dynamics' else ''
+    raise errors.ScenarioError(f'{error}{more}') from None
 
 
 def _check_numbers(scene: 'scenario.Scenario') -> None:

@@ -3,7 +3,7 @@
 import dataclasses
 from typing import Any
 
-from waggle_tasks import scenario
+from waggle_tasks import doors, scenario
 from waggle_tasks.protocol import checks, decoys
 
 SCENARIOS = {
@@ -19,7 +19,7 @@ def find(name: str, **changes: object) -> scenario.Scenario:
   """The scenario of a name, with some of its fields changed.
 
   Args:
-    name: One of `SCENARIOS`.
+    name: One of `SCENARIOS`, or one that a package offers, see `doors`.
     **changes: Fields of `Scenario` and their new values.
 
   Raises:
@@ -27,9 +27,23 @@ def find(name: str, **changes: object) -> scenario.Scenario:
       or if a value breaks a rule.
   """
   error = scenario.ScenarioError
-  checks.choice('task', name, [*SCENARIOS], error)
+  usual = SCENARIOS[name] if name in SCENARIOS else _offered(name)
   fields = [field.name for field in dataclasses.fields(scenario.Scenario)]
   values: dict[str, Any] = changes
   for field in values:
     checks.choice('field', field, fields, error)
-  return dataclasses.replace(SCENARIOS[name], **values)
+  return dataclasses.replace(usual, **values)
+
+
+def _offered(name: str) -> scenario.Scenario:
+  """A scenario from outside."""
+  found = doors.find('scenarios', name, SCENARIOS)
+  if isinstance(found, scenario.Scenario):
+    return found
+  error = scenario.ScenarioError
+  if found is not None:
+    raise error(
+      f'`task` {name!r} must be a Scenario: its package offers {found!r}'
+    )
+  checks.choice('task', name, [*SCENARIOS, *doors.names('scenarios')], error)
+  raise error(f'`task` must be known: got {name!r}')

@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING
 
-from waggle_tasks import errors
+from waggle_tasks import doors, errors
 from waggle_tasks.protocol import checks, language_names, languages
 from waggle_tasks.protocol import payload as payload_lib
 
@@ -25,8 +25,10 @@ def find(language: str | languages.Language) -> languages.Language | None:
     return language
   if language == PAPER:
     return None
-  choices = [PAPER, *languages.LANGUAGES]
   stem, _, changes = str(language).partition(':')
+  choices = [PAPER, *languages.LANGUAGES]
+  if stem not in choices:
+    choices += doors.names('languages')
   checks.choice('language', stem, choices, errors.ScenarioError)
   if stem == PAPER:
     raise errors.ScenarioError(

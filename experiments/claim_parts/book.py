@@ -7,7 +7,7 @@ together take less than 30 minutes on two cores.
 
 from typing import Any
 
-from waggle_tasks.experiments.claim_parts import colony_book, kinds
+from waggle_tasks.experiments.claim_parts import colony_book, kinds, time_book
 
 _DECOYS: dict[str, Any] = {
   'control': 'circles,diagonals,random_walk,navigation,swapped,repeated,'
@@ -214,8 +214,7 @@ CLAIMS = {
     ),
   ),
   'link-codes': kinds.Claim(
-    'link-codes', kinds.UNCHECKED,
-    detail='ten million messages each take minutes',
+    'link-codes', kinds.UNCHECKED, detail='ten million messages take minutes'
   ),
   'paper': kinds.Claim(
     'paper', kinds.ROWS,
@@ -252,25 +251,11 @@ CLAIMS = {
   'boundary': kinds.Claim(
     'boundary', kinds.TEXT, ('boundary', '--half_span_deg=45')
   ),
-  'symbols': kinds.Claim('symbols', kinds.UNCHECKED, detail='takes minutes'),
-  'timings': kinds.Claim(
-    'timings', kinds.UNCHECKED,
-    detail='times and memory, which differ between runs',
-  ),
-  'learners': kinds.Claim(
-    'learners', kinds.UNCHECKED, detail='times, which differ between runs'
-  ),
-  'dance': kinds.Claim(
-    'dance', kinds.UNCHECKED,
-    detail='what is learned differs a little between kinds of processors',
-  ),
-  'pictures': kinds.Claim(
-    'pictures', kinds.UNCHECKED, detail='a test compares pictures each run'
-  ),
   'event-logs': kinds.Claim(
     'event-logs', kinds.ROWS, ('bench', '--check_events', '--suite=controls')
   ),
   **colony_book.CLAIMS,
+  **time_book.CLAIMS,
 }  # fmt: skip
 
 _RIGHT = r'^right: (\d+)/(\d+) exposures'

@@ -14,7 +14,7 @@ from waggle_tasks import errors
 
 NAMES = ('README.md', 'docs')
 _MARK = re.compile(r'^<!-- claim: ([\w-]+) -->$')
-_SHELL = ('sh', 'python', 'json')  # What is run, and not what came out.
+_SHELL = ('sh', 'python', 'json', 'toml')  # Written, and not what came out.
 _RULE = re.compile(r'^-+( +-+)*$')
 
 

@@ -16,7 +16,7 @@ import importlib.metadata
 import pathlib
 import types
 
-from waggle_tasks import registry, scenario
+from waggle_tasks import placement, registry, scenario
 from waggle_tasks.agents import receivers
 from waggle_tasks.experiments.record import imports, source_files
 
@@ -40,7 +40,7 @@ def paths(
   made, config = receivers.configured(receiver_name)
   roots = [made, config, registry.build, registry.environment]
   for scene in scenes:  # All else in one is of this project.
-    roots += type(scene), scene.layout, scene.codebook.gestures
+    roots += type(scene), placement.layout(scene), scene.codebook.gestures
   seen: set[int] = set()
   out: dict[str, pathlib.Path] = {}
   for value in roots:

@@ -21,6 +21,7 @@ def run(
   scene: scenario.Scenario,
   receiver_name: str,
   onlookers: Sequence[episode.Onlooker] = (),
+  team: observer_agent.Team | None = None,
 ) -> Rollout:
   """Runs a scenario with a team of one receiver.
 
@@ -28,11 +29,14 @@ def run(
     scene: The scenario.
     receiver_name: One of `receivers.RECEIVERS`.
     onlookers: What else looks on; they cannot change what happens.
+    team: A new team of that receiver, where its maker looks into it.
 
   Raises:
     WaggleError: if the receiver is not known.
   """
-  team = observer_agent.Team(scene.observers, receiver_name, scene.agreement)
+  team = team or observer_agent.Team(
+    scene.observers, receiver_name, scene.agreement
+  )
   environment = registry.environment(scene)
   try:
     rollout = play(environment, team, onlookers)

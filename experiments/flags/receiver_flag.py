@@ -16,7 +16,8 @@ _LANGUAGE = f"Unset, {JOINT} where another language than the paper's is spoken."
 flags.disclaim_key_flags()
 
 RULE = (
-  f'One of {", ".join(receivers.RECEIVERS)}, or {outsiders.FORM} of your own;'
+  f'One of {", ".join(receivers.RECEIVERS)}, a name that an installed package'
+  f' offers, or {outsiders.FORM} of your own;'
   ' with :NUMBER=VALUE,... for other numbers.'
 )
 

@@ -180,7 +180,7 @@ def rows(
     place = f'{path}, line {number},'
     if isinstance(table, dict):
       table = encoding.unstamped(table, place)
-    out.append(_made(kind, table, place, 'row'))
+    out.append(made(kind, table, place, 'row'))
   return out
 
 
@@ -207,12 +207,12 @@ def read_config(path: pathlib.Path) -> Flown:
       name: value for name, value in scene.items()
       if name in names and isinstance(value, dict)
     }  # fmt: skip
-  return _made(Flown, table, path)
+  return made(Flown, table, path)
 
 
 def read_result(path: pathlib.Path) -> Result:
   """Reads what came out of a run, its result.json; see `read_config`."""
-  return _made(Result, read_json(path), path)
+  return made(Result, read_json(path), path)
 
 
 def read_scenario(path: pathlib.Path) -> scenario.Scenario:
@@ -226,13 +226,13 @@ def read_scenario(path: pathlib.Path) -> scenario.Scenario:
     FormatError: if a newer program wrote it.
   """
   fields = read_config(path).scenario
-  return _made(scenario.Scenario, fields, path, 'scenario')
+  return made(scenario.Scenario, fields, path, 'scenario')
 
 
-def _made(
+def made(
   kind: type[_Value], table: object, place: object, name: str = ''
 ) -> _Value:
-  """A value of plain data from a file."""
+  """A value of plain data from a file; an ArchiveError if damaged."""
   try:
     return plain.from_plain(kind, table, name)
   except plain.UnknownFieldError as error:
@@ -273,7 +273,7 @@ def read_events(
         f'{place} holds what this program does not know; a newer one may have'
         f' written it: `kind` must be one of {[*_EVENTS]}: got {kind!r}'
       )
-    own.append(_made(_EVENTS[kind], row, place, kind))
+    own.append(made(_EVENTS[kind], row, place, kind))
   return {name: tuple(each) for name, each in events.items()}
 
 

@@ -17,6 +17,7 @@ from waggle_tasks.experiments.record import (
 )
 
 _OF_FLIGHTS, _OF_REPLAYS = ('seen_angle_deg', 'seen_distance_m'), ('spoilt',)
+_OF_BOARDS = 'read_ms', 'acquired_s'
 JOURNAL, RESULTS, TABLE = 'journal.jsonl', 'results.jsonl', 'results.csv'
 PROVENANCE, SUMMARY = 'provenance.json', 'summary.txt'
 FIGURES = 'envelope.svg', 'envelope.png'
@@ -135,6 +136,9 @@ class Exposure(verdicts.Account):
     seen_angle_deg: From where it believes that it saw its message.
     seen_distance_m: The same.
     spoilt: How its images were, in a replay.
+    read_ms: How long its receiver took for an image, the median; on a board.
+    acquired_s: How long after the first motion it held the dancer, see
+      `acquired`; on a board.
   """
 
   true_angle_deg: float
@@ -147,6 +151,8 @@ class Exposure(verdicts.Account):
   seen_angle_deg: float | None = None
   seen_distance_m: float | None = None
   spoilt: str = ''
+  read_ms: float | None = None
+  acquired_s: float | None = None
 
   @classmethod
   def of(
@@ -202,10 +208,13 @@ class SweepRow:
 
 
 def table(row: SuiteRow | SweepRow) -> dict[str, Any]:
-  """A row as plain data, without what is told only of flights or of replays."""
+  """A row as plain data, without what is told of other kinds of rows."""
   whole = encoding.stamped(row)
   for each in whole['outcomes']:
-    for name in _OF_FLIGHTS if each.get('spoilt') else _OF_REPLAYS:
+    unlike = [*(_OF_FLIGHTS if each.get('spoilt') else _OF_REPLAYS)]
+    if each.get('read_ms') is None:
+      unlike += _OF_BOARDS
+    for name in unlike:
       each.pop(name, None)
   return whole
 

@@ -63,6 +63,11 @@ class Study(abc.ABC, Generic[_Case, _Row]):
     del case
     return self.receiver_name
 
+  def beside(self, case: _Case) -> str:
+    """What else than its episode decides the result of a case, as text."""
+    del case
+    return f' {self.replays} replays' if self.replays else ''
+
   def told(self, flown: int, active: Sequence[str]) -> str:
     """The words before the bar: who is under way, or how many were flown."""
     return ', '.join(active) or f'{flown}/{len(self.cases)} cases'
@@ -134,9 +139,9 @@ def run(
   digest = provenance.source_digest(own)
   modules = tuple(outside.modules(foreign).items())
   shows = 1 + study.replays
-  more = f' {study.replays} replays' if study.replays else ''
   identities = {
-    case.name: identity_lib.of(case.scene, study.reader(case), digest) + more
+    case.name: identity_lib.of(case.scene, study.reader(case), digest)
+    + study.beside(case)
     for case in study.cases
   }
   names = case_rows.RESULTS, case_rows.TABLE, *study.files

@@ -39,7 +39,7 @@ def fly(
   if replays:
     shown = replay_flight.fly(case.scene, receiver_name, replays, report)
     passed = all(each.right for each in shown[-1])
-    return _row(case, receiver_name, identity, *shown, passed)
+    return told(case, receiver_name, identity, *shown, passed)
   if case.scene.fidelity != fidelity.PIXELS:
     return _without_pictures(case, receiver_name, identity)
   onlookers = [job_progress.reporter(report)]
@@ -58,7 +58,7 @@ def _without_pictures(
     case_rows.Exposure.of(each, poses[each.observer], **_reading(seen))
     for each, seen in zip(verdict.outcomes, events, strict=True)
   ]
-  return _row(
+  return told(
     case, receiver_name, identity, low_level.RENDERER, case.scene.episode_s,
     exposures, verdict.passed,
   )  # fmt: skip
@@ -79,13 +79,13 @@ def row(
     )
     for each in verdict.outcomes
   ]
-  return _row(
+  return told(
     case, receiver_name, identity, rollout.renderer, rollout.times_s[-1],
     exposures, verdict.passed,
   )  # fmt: skip
 
 
-def _row(
+def told(
   case: sweep_cases.Sample,
   receiver_name: str,
   identity: str,
@@ -94,6 +94,17 @@ def _row(
   exposures: Sequence[case_rows.Exposure],
   passed: bool,
 ) -> case_rows.SweepRow:
+  """A case's row, from what became of its observers.
+
+  Args:
+    case: The case.
+    receiver_name: The receiver.
+    identity: See `identity.of`.
+    renderer: The GL renderer.
+    simulated_s: How long the episode was.
+    exposures: What became of each observer, or replay.
+    passed: Whether no check of any observer failed.
+  """
   return case_rows.SweepRow(
     case=case.name,
     cell=dict(case.cell),
