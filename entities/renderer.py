@@ -143,6 +143,14 @@ class Renderer:
         context.call(self._redraw, camera_id, canvas, moved, anew)
     return canvas.pixels
 
+  def shown(self, camera_id: int) -> tuple[windows.Window, int]:
+    """The window around all that moves in a camera's picture.
+
+    And how often its room was drawn.
+    """
+    canvas = self._canvases[camera_id]
+    return windows.around_all(canvas.shown), canvas.rooms
+
   def _watch_looks(self) -> None:
     looks = [field.tobytes() for field in self._look_fields]
     if looks != self._looks:
@@ -201,6 +209,7 @@ class Renderer:
         self._draw(canvas, (0, 0, *canvas.size), canvas.room, hidden)
         canvas.pixels[:] = canvas.room
         canvas.shown = {}
+        canvas.rooms += 1
       changed = set(moved)
       kept = {
         window: parts

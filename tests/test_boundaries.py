@@ -13,7 +13,7 @@ ROOT = pathlib.Path(__file__).parents[1]
 
 SIMULATOR = frozenset({'dm_control', 'dm_env', 'mujoco'})
 # Modules beside the rooms that hold plain values and may be used by all.
-OPEN = ('_version', 'appearance', 'errors', 'msh', 'runtime', 'sensor')
+OPEN = ('_version', 'appearance', 'errors', 'eyes', 'msh', 'runtime', 'sensor')
 
 
 @dataclasses.dataclass(frozen=True)

@@ -15,7 +15,7 @@ import math
 import pathlib
 from typing import Any
 
-from waggle_tasks import kinds, plain, scenario
+from waggle_tasks import eye_presets, eyes, kinds, plain, scenario
 from waggle_tasks.experiments.record import docs, hover_file, language_file
 from waggle_tasks.protocol import checks, gestures, languages
 from waggle_tasks.protocol.symbols import Symbol
@@ -152,6 +152,8 @@ def changed(scene: scenario.Scenario, values: Values) -> scenario.Scenario:
     WaggleError: if a name is not known, a value breaks a rule of the scenario,
       or is a number of gestures where these are no Vs.
   """
+  if values.get('eye', eyes.IDEAL) != eyes.IDEAL:
+    scene = _with_eye(scene, values)
   parts: dict[str, dict[str, Any]] = {}
   for name, value in values.items():
     checks.choice('field', name, [*table()], scenario.ScenarioError)
@@ -171,6 +173,21 @@ def changed(scene: scenario.Scenario, values: Values) -> scenario.Scenario:
     else:
       whole[part] = dataclasses.replace(now, **numbers)
   return dataclasses.replace(scene, **whole)
+
+
+def _with_eye(scene: scenario.Scenario, values: Values) -> scenario.Scenario:
+  """A scenario with the camera that is named, which other values then change.
+
+  Raises:
+    EyeError: if it is not known, or another size, field of view or rate is
+      given beside it.
+  """
+  name = values['eye']
+  found = eye_presets.fields(name)
+  for field, value in found.items():
+    if field != 'eye' and values.get(field, value) != value:
+      eye_presets.refuse(field, name, value, values[field])
+  return dataclasses.replace(scene, **found)
 
 
 def flat(fields: Values) -> dict[str, Any]:
