@@ -9,6 +9,7 @@ import numpy as np
 
 from waggle_tasks.agents import (
   absolute,
+  calibrated,
   description,
   group,
   history,
@@ -106,6 +107,7 @@ class JointReceiver:
     self._late_s = agreement.tolerance.clock_rate * self._length_s + _LATE_S
     self._collected = packets.Collector(agreement.packets or packets.Packets())
     self._tracker = absolute.AbsoluteTracker(config.tracking)
+    self._seen_with = calibrated.Calibrated(agreement.camera)
     self._images = inputs.Images()
     self._forget()
     self.track: klt.Track | None = None
@@ -148,8 +150,9 @@ class JointReceiver:
         has changed.
     """
     self._images.check(image, time_s)
-    tracks = self._tracker.step(image, time_s)
-    self.track = tracks[-1]
+    found = self._tracker.step(self._seen_with.part(image), time_s)
+    self.track = self._seen_with.seen(found[-1])
+    tracks = [self._seen_with.levelled(each) for each in found]
     ghost = self._tracker.ghost
     if ghost is None:
       if self._history:
@@ -161,12 +164,13 @@ class JointReceiver:
       return ()
     if not self._history:
       before = [at for at in self._rests if at < tracks[0].time_s]
-      self._history.rest(before, ghost.anchor_px)
+      anchor_px = self._seen_with.place(ghost.anchor_px)
+      self._history.rest(before, anchor_px)
     for track in tracks:
       self._history.add(track)
     self._history.forget(time_s, 2 * (self._length_s + self._late_s))
-    found = self._starts.step(tracks)
-    events = [self._begun(each, time_s) for each in found]
+    begun = self._starts.step(tracks)
+    events = [self._begun(each, time_s) for each in begun]
     return (*events, *self._read(time_s))
 
   def _begun(self, start: lock.Lock, time_s: float) -> receiver.Event:

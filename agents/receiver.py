@@ -165,7 +165,7 @@ class StagedReceiver:
     config = group.zoomed(config or self.DEFAULT, agreement.camera.zoom)
     clock = agreement.clock if config.framing.clock else None
     least_s = 0.0 if clock is None else clock.least_s
-    self._watcher = watchers.make(config, least_s)
+    self._watcher = watchers.make(config, least_s, agreement.camera)
     templates = views.templates(agreement, config.views)
     self._recogniser = recogniser.Recogniser(config.recognition, templates)
     blind_s = 0.0
@@ -216,18 +216,19 @@ class StagedReceiver:
     """
     self._images.check(image, time_s)
     watcher = self._watcher
-    self.track, self.segment = watcher.step(image, time_s)
+    track, self.segment = watcher.step(image, time_s)
+    self.track = watcher.seen
     self._liveness.step(image, time_s)
     if watcher.gave_up:
       self._sight.give_up()
-    self._sight.step(self.track)
+    self._sight.step(track)
     events = []
     if self.segment is not None:
       found = self._recogniser.recognise(self.segment)
       moment = self._sight.event(self.segment.begin_s, self.segment.end_s)
       events.append(self._event(time_s, found.symbol, moment, found))
     if self._stillness.step(
-      self.track, watcher.anchor_px, watcher.moving, watcher.wander
+      track, watcher.anchor_px, watcher.moving, watcher.wander
     ):
       if self._may_rest(time_s):
         moment = self._sight.event(self._stillness.since_s, time_s)

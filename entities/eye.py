@@ -1,6 +1,7 @@
 """The observer's camera as a composer observable."""
 
 from collections.abc import Callable
+import functools
 import weakref
 
 from dm_control import mjcf
@@ -54,7 +55,7 @@ class EyeCamera(observable.Observable):
     camera: mjcf.Element,
     incremental: bool = True,
     spoil: Spoil = lambda picture: picture,
-    expose: Expose = lambda _, draw: draw()[0],
+    expose: Expose = lambda _, draw: draw().picture,
     size: tuple[int, int] | None = None,
   ) -> None:
     """Makes the observable.
@@ -113,9 +114,7 @@ class EyeCamera(observable.Observable):
     camera_id = physics.bind(self._camera).element_id
     model, data = physics.model.ptr, physics.data.ptr
 
-    def draw() -> tuple[np.ndarray, tuple[int, int, int, int], int]:
-      picture = eyes.image(camera_id, self._incremental)
-      return picture, *eyes.shown(camera_id)
+    draw = functools.partial(eyes.drawn, camera_id, self._incremental)
 
     def take() -> np.ndarray:
       # A state that was just set shows, though nothing followed from it yet.

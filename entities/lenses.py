@@ -50,9 +50,8 @@ class Shake:
       focal_px: Its focal length, by which its shaking is told in pixels.
       random_state: What it draws from.
     """
-    shares = (
-      np.arange(_WAVES) + random_state.uniform(size=(3, _WAVES))
-    ) / _WAVES
+    shares = np.arange(_WAVES) + random_state.uniform(size=(3, _WAVES))
+    shares /= _WAVES  # One in each part of the band.
     band = 1 + _BAND * (2 * shares - 1)
     self._rate = 2 * math.pi * eye.vibration_hz * band  # (3, W) rad/s
     low, high = _ROLLING_BAND

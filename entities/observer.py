@@ -122,7 +122,7 @@ class Observer(crazyflie.Crazyflie):
   def expose(self, physics: mjcf.Physics, draw: shutter.Draw) -> np.ndarray:
     """The picture that the eye takes now, (H, W, 3) uint8."""
     if self._shutter is None:
-      return draw()[0]
+      return draw().picture
     return self._shutter.expose(physics, draw)
 
   def image_time_s(self, physics: mjcf.Physics) -> np.ndarray:

@@ -25,7 +25,7 @@ import mujoco
 import numpy as np
 
 from waggle_tasks.entities import canvas as canvas_lib
-from waggle_tasks.entities import forks, framebuffer, rigid, windows
+from waggle_tasks.entities import forks, framebuffer, rigid, shutter, windows
 
 _SAMPLES = 2  # Samples per pixel along each axis.
 _HIDDEN_GROUP = 5  # Not drawn by default (MuJoCo, mjvOption.geomgroup).
@@ -143,13 +143,12 @@ class Renderer:
         context.call(self._redraw, camera_id, canvas, moved, anew)
     return canvas.pixels
 
-  def shown(self, camera_id: int) -> tuple[windows.Window, int]:
-    """The window around all that moves in a camera's picture.
-
-    And how often its room was drawn.
-    """
+  def drawn(self, camera_id: int, incremental: bool = True) -> shutter.Drawn:
+    """The camera's picture now, see `image`, and what of it is its room."""
+    pixels = self.image(camera_id, incremental)
     canvas = self._canvases[camera_id]
-    return windows.around_all(canvas.shown), canvas.rooms
+    window = windows.around_all(canvas.shown)
+    return shutter.Drawn(pixels, canvas.room, window, canvas.rooms)
 
   def _watch_looks(self) -> None:
     looks = [field.tobytes() for field in self._look_fields]

@@ -4,7 +4,8 @@ A picture is made of sub-frames: what the eye would see at moments a few
 milliseconds apart, by where everything was then. Between two of them light is
 taken to change evenly, so that a row's share of each follows from when the row
 was exposed. What moves by a straight way is smeared and slanted as it should
-be; between two moments it is blended.
+be; between two moments it is blended. Where the eye itself moves, all of the
+picture is drawn anew: then only the first and the last moment are taken.
 """
 
 from collections import deque
@@ -23,10 +24,25 @@ from waggle_tasks.protocol import camera as camera_lib
 _STEP_S = 0.008  # Longest from one sub-frame to the next.
 _STILL = 1e-6  # What moves by less, in m or parts of a quaternion, rests.
 
-# Draws the scene as it is: the picture, (H, W, 3) uint8, the window around all
-# that moves in it, and a number that is another one where the rest was drawn
-# anew.
-Draw = Callable[[], tuple[np.ndarray, windows.Window, int]]
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class Drawn:
+  """The scene as it is.
+
+  Attributes:
+    picture: (H, W, 3) uint8, used again by the next one.
+    room: (H, W, 3) uint8, the same without what can move.
+    window: What of the picture may differ from that.
+    version: Another number where the room was drawn anew.
+  """
+
+  picture: np.ndarray
+  room: np.ndarray
+  window: windows.Window
+  version: int
+
+
+Draw = Callable[[], Drawn]
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -52,8 +68,9 @@ class Shutter:
     """
     count = math.ceil(eye.takes_s / _STEP_S - 1e-9) + 1
     self._ago_s = np.linspace(eye.takes_s, 0.0, count)  # (K,)
-    self._shares = shares(
-      -self._ago_s, eye.shutter_s, eye.readout_s, camera.rows
+    self._shares, self._ends = (
+      shares(moments_s, eye.shutter_s, eye.readout_s, camera.rows)
+      for moments_s in (-self._ago_s, -self._ago_s[[0, -1]])
     )
     self._rows, self._takes_s = rows, eye.takes_s
     self._states: deque[_State] = deque()
@@ -86,34 +103,61 @@ class Shutter:
     self.note(physics)
     numbers = np.stack([each.numbers for each in self._states])
     if np.abs(numbers - numbers[-1]).max() <= _STILL:
-      return draw()[0]
+      return draw().picture
     times_s = np.array([each.time_s for each in self._states])
     now = numbers[-1].copy()
-    pictures, around, versions = [], [], set()
-    for time_s in times_s[-1] - self._ago_s:
-      _put(physics, _between(times_s, numbers, time_s))
-      picture, window, version = draw()
-      pictures.append(picture.copy())
-      around.append(window)
-      versions.add(version)
-    _put(physics, now)
-    height, width = pictures[0].shape[:2]
-    whole = 0, 0, width, height
-    return self._blended(
-      pictures, windows.around_all(around) if len(versions) == 1 else whole
-    )
+    places = [_between(times_s, numbers, t) for t in times_s[-1] - self._ago_s]
+    try:
+      return self._blended(physics, places, draw)
+    finally:
+      _put(physics, now)
 
   def _blended(
-    self, pictures: list[np.ndarray], window: windows.Window
+    self, physics: mjcf.Physics, places: list[np.ndarray], draw: Draw
   ) -> np.ndarray:
-    out, part = pictures[-1], windows.slices(window)
-    rows = self._rows[part if self._rows.shape[1] > 1 else part[:1]]
-    shares_ = self._shares[rows][..., None, :]  # (h, w, 1, K)
-    total = np.full(out[part].shape, 0.5, np.float32)  # To round.
-    for number, picture in enumerate(pictures):
-      total += picture[part] * shares_[..., number]
-    out[part] = total
-    return out
+    _put(physics, places[0])
+    first = draw()
+    version, parts = first.version, {0: _part(first)}
+    picture = first.picture.copy()
+    for number in (len(places) - 1, *range(1, len(places) - 1)):
+      _put(physics, places[number])
+      drawn = draw()
+      if drawn.version != version:
+        return self._whole(picture, drawn.picture)
+      parts[number] = _part(drawn)
+    around = windows.around_all(window for window, _ in parts.values())
+    left, top, _, _ = around
+    behind = drawn.room[windows.slices(around)].astype(np.float32)
+    total = behind + np.float32(0.5)  # To round.
+    for number, (window, part) in parts.items():
+      inside = windows.slices(windows.shifted(window, -left, -top))
+      share = self._share(self._shares, number, window)
+      total[inside] += share * (part - behind[inside])
+    picture[:] = drawn.room
+    picture[windows.slices(around)] = total
+    return picture
+
+  def _whole(self, first: np.ndarray, last: np.ndarray) -> np.ndarray:
+    """The picture of an eye that moves, by its first and its last moment."""
+    height, width = first.shape[:2]
+    share = self._share(self._ends, 0, (0, 0, width, height))
+    off = first.astype(np.float32) - last
+    return (last + share * off + np.float32(0.5)).astype(np.uint8)
+
+  def _share(
+    self, of: np.ndarray, number: int, window: windows.Window
+  ) -> np.ndarray:
+    """(h, w, 1) or (h, 1, 1), what a window has of a moment."""
+    rows, columns = windows.slices(window)
+    wide = self._rows.shape[1] > 1
+    return of[self._rows[rows, columns if wide else slice(None)], number][
+      ..., None
+    ]
+
+
+def _part(drawn: Drawn) -> tuple[windows.Window, np.ndarray]:
+  """What of a picture may differ from its room, a copy."""
+  return drawn.window, drawn.picture[windows.slices(drawn.window)].copy()
 
 
 def shares(

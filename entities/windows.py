@@ -73,6 +73,12 @@ def around_all(several: Iterable[Window]) -> Window:
   return functools.reduce(_union, parts) if parts else (0, 0, 0, 0)
 
 
+def shifted(window: Window, right_px: int, down_px: int) -> Window:
+  """A window as counted from elsewhere."""
+  left, top, right, bottom = window
+  return left + right_px, top + down_px, right + right_px, bottom + down_px
+
+
 def _union(a: Window, b: Window) -> Window:
   return min(a[0], b[0]), min(a[1], b[1]), max(a[2], b[2]), max(a[3], b[3])
 

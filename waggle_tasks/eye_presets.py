@@ -93,9 +93,9 @@ _FPV = Preset(
 # A phone that films 1280 x 720. Read in 31.98 ms, as was measured of an
 # iPhone 4 (Forssen and Ringaby, Rectifying rolling shutter video from hand-held
 # devices, 2010, and the table in the documentation of Kalibr). Its field is
-# that of 26 mm before 36 x 24 mm, as makers print it, cut to 16:9. Full wells of
-# 5000 electrons are usual for pixels of 1.4 um. x264's default rate factor.
-# Its noise is assumed.
+# that of 26 mm before 36 x 24 mm, as makers print it, cut to 16:9. x264's
+# default rate factor. Its full wells, of 5000 electrons, and the rest of its
+# noise are assumed.
 _PHONE = Preset(
   eyes.Eye(
     'phone',

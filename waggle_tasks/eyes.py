@@ -47,8 +47,8 @@ class Eye:
   size, its field of view and its rate.
 
   Attributes:
-    eye: The camera that it began as, one of `NAMES`, with its size, its field of
-      view and its rate; other values change it.
+    eye: The camera that it began as, one of `NAMES`, with its size, its field
+      of view and its rate; other values change it.
     pitch_deg: How far it looks up from the level, -45 to 45 degrees.
     roll_deg: How far it is turned clockwise about its axis, as who looks along
       it sees it, -180 to 180 degrees.

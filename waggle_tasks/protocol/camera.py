@@ -97,7 +97,8 @@ class Camera:
       edge = lens.shown(np.array([0.0, math.tan(math.radians(fovy_deg) / 2)]))
       if not edge[1] > 0:
         raise CameraError(
-          f'`lens` must show {fovy_deg / 2:g} degrees off its axis: got {lens!r}'
+          f'`lens` must show {fovy_deg / 2:g} degrees off its axis:'
+          f' got {lens!r}'
         )
       focal_px = rows / 2 / float(edge[1])
     return cls(columns, rows, focal_px, lens, pitch_deg, roll_deg, readout_s)
