@@ -35,7 +35,7 @@ ROOMS = {
   'entities': Room(
     'entities',
     frozenset({'protocol'}),
-    SIMULATOR | {'numpy', 'cv2', 'OpenGL'},
+    SIMULATOR | {'numpy', 'cv2', 'OpenGL', 'av'},
   ),
   'arenas': Room('arenas', frozenset({'protocol'}), SIMULATOR | {'numpy'}),
   'agents': Room(

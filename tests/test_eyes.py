@@ -6,8 +6,17 @@ import dataclasses
 import numpy as np
 import pytest
 
-from waggle_tasks import errors, eye_presets, eyes, plain, registry, scenario
-from waggle_tasks.experiments.record import scenario_fields
+from waggle_tasks import (
+  errors,
+  eye_presets,
+  eyes,
+  plain,
+  registry,
+  scenario,
+  suites,
+)
+from waggle_tasks.experiments.record import changes, scenario_fields
+from waggle_tasks.experiments.studies import sweep_cases
 from waggle_tasks.protocol import reference
 
 SMALL = {'camera_width_px': 160, 'camera_height_px': 120}
@@ -139,3 +148,38 @@ def test_a_camera_that_looks_up_sees_the_dancer_below_its_middle() -> None:
   moved = other[55 + down : 65 + down, 75:85] - one[55:65, 75:85]
   there = other[55:65, 75:85] - one[55:65, 75:85]
   assert np.abs(moved).mean() < 0.4 * np.abs(there).mean()
+
+
+def test_a_command_that_makes_a_scenario_again_names_its_camera() -> None:
+  for values in (
+    {'eye': 'phone'},
+    {'eye': 'phone', 'mosaic': False, 'shutter_s': 0.02},
+    {'grey': True},
+  ):
+    scene = scenario_fields.make(values)
+    flags = scenario_fields.flags(scenario_fields.flat(plain.to_plain(scene)))
+    said = dict(each.removeprefix('--').split('=') for each in flags)
+    assert said.keys() == values.keys(), said
+    again = {n: scenario_fields.parse(n, text) for n, text in said.items()}
+    assert scenario_fields.make(again) == scene
+    assert {c.split('=')[0] for c in changes.of(scene)} == {*values}
+
+
+def test_a_grid_of_cameras_flies_each_with_its_own_numbers() -> None:
+  base = scenario_fields.defaults() | {'read_noise': 4.0}
+  grid = {'eye': ['ideal', 'phone', 'webcam'], 'shutter_s': [0.0, 0.02]}
+  drawn = sweep_cases.cases(grid, base, 1)
+  scenes = [each.scene for each in drawn]
+  assert [s.camera_width_px for s in scenes] == [640, 640, 1280, 1280, 640, 640]
+  assert [s.eye.shutter_s for s in scenes] == [0.0, 0.02] * 3
+  assert {s.eye.read_noise for s in scenes} == {4.0}
+  assert [s.eye.codec for s in scenes[::2]] == ['none', 'h264', 'jpeg']
+  for each in drawn:
+    assert scenario_fields.make(each.values) == each.scene
+
+
+def test_a_suite_names_cameras() -> None:
+  (case,) = suites.from_rows([{'name': 'seen', 'eye': 'fpv'}])
+  assert case.scene.camera_fovy_deg == 82.5
+  with pytest.raises(errors.WaggleError, match='`rate_hz` must be 25'):
+    suites.from_rows([{'name': 'seen', 'eye': 'fpv', 'rate_hz': 50}])

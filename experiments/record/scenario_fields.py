@@ -15,8 +15,13 @@ import math
 import pathlib
 from typing import Any
 
-from waggle_tasks import eye_presets, eyes, kinds, plain, scenario
-from waggle_tasks.experiments.record import docs, hover_file, language_file
+from waggle_tasks import eyes, kinds, plain, scenario
+from waggle_tasks.experiments.record import (
+  docs,
+  eye_fields,
+  hover_file,
+  language_file,
+)
 from waggle_tasks.protocol import checks, gestures, languages
 from waggle_tasks.protocol.symbols import Symbol
 from waggle_tasks.tasks import hover
@@ -152,8 +157,7 @@ def changed(scene: scenario.Scenario, values: Values) -> scenario.Scenario:
     WaggleError: if a name is not known, a value breaks a rule of the scenario,
       or is a number of gestures where these are no Vs.
   """
-  if values.get('eye', eyes.IDEAL) != eyes.IDEAL:
-    scene = _with_eye(scene, values)
+  scene = eye_fields.put(scene, values)
   parts: dict[str, dict[str, Any]] = {}
   for name, value in values.items():
     checks.choice('field', name, [*table()], scenario.ScenarioError)
@@ -173,21 +177,6 @@ def changed(scene: scenario.Scenario, values: Values) -> scenario.Scenario:
     else:
       whole[part] = dataclasses.replace(now, **numbers)
   return dataclasses.replace(scene, **whole)
-
-
-def _with_eye(scene: scenario.Scenario, values: Values) -> scenario.Scenario:
-  """A scenario with the camera that is named, which other values then change.
-
-  Raises:
-    EyeError: if it is not known, or another size, field of view or rate is
-      given beside it.
-  """
-  name = values['eye']
-  found = eye_presets.fields(name)
-  for field, value in found.items():
-    if field != 'eye' and values.get(field, value) != value:
-      eye_presets.refuse(field, name, value, values[field])
-  return dataclasses.replace(scene, **found)
 
 
 def flat(fields: Values) -> dict[str, Any]:
@@ -268,11 +257,11 @@ def parse(name: str, text: str) -> object:
 
 def flags(values: Values) -> list[str]:
   """The flags that make a scenario: those that differ from their default."""
-  usual = defaults()
+  known = defaults() | {**eye_fields.of(values), 'eye': eyes.IDEAL}
   return [
     f'--{name}={_text(value)}'
     for name, value in values.items()
-    if value != usual[name]
+    if value != known[name]
   ]
 
 

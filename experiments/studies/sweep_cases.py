@@ -9,7 +9,7 @@ from typing import Any
 
 from waggle_tasks import errors
 from waggle_tasks import scenario as scenario_lib
-from waggle_tasks.experiments.record import scenario_fields
+from waggle_tasks.experiments.record import eye_fields, scenario_fields
 from waggle_tasks.protocol import checks, packets
 
 RANDOM, ALL = 'random', 'all'
@@ -159,7 +159,8 @@ def draw(
   Raises:
     WaggleError: if the scenario breaks a rule.
   """
-  values = {**base, **cell}
+  usual = scenario_fields.defaults()
+  values = eye_fields.filled({**base, **cell}, usual, cell)
   drawn = hashlib.sha256(_seed_text(values, repeat).encode()).digest()
   values['seed'] = int.from_bytes(drawn[:4], 'big')
   if values['payload'] == RANDOM:
