@@ -9,7 +9,7 @@ import math
 
 import numpy as np
 
-from waggle_tasks.agents import klt
+from waggle_tasks.agents import bent_turns, klt
 from waggle_tasks.protocol import camera as camera_lib
 
 _STEP_PX = 0.5  # Of two places whose distance is compared.
@@ -42,6 +42,15 @@ class Calibrated:
     (left, top), (right, bottom) = begin, begin + (2 * reach).astype(int)
     self._origin_px = begin.astype(float)
     self.window = slice(int(top), int(bottom)), slice(int(left), int(right))
+
+  @property
+  def bends(self) -> bent_turns.BentTurns | None:
+    """How trackers' pictures move when the camera turns; None if plain."""
+    if self._plain:
+      return None
+    rows, columns = self.window
+    size = columns.stop - columns.start, rows.stop - rows.start
+    return bent_turns.BentTurns(self._camera, self._origin_px, size)
 
   def part(self, image: np.ndarray) -> np.ndarray:
     """What trackers are given of an image, (H, W, 3)."""

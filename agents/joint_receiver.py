@@ -106,8 +106,10 @@ class JointReceiver:
     # A clock may be slow, and an image late.
     self._late_s = agreement.tolerance.clock_rate * self._length_s + _LATE_S
     self._collected = packets.Collector(agreement.packets or packets.Packets())
-    self._tracker = absolute.AbsoluteTracker(config.tracking)
     self._seen_with = calibrated.Calibrated(agreement.camera)
+    self._tracker = absolute.AbsoluteTracker(
+      config.tracking, self._seen_with.bends
+    )
     self._images = inputs.Images()
     self._forget()
     self.track: klt.Track | None = None

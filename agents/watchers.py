@@ -108,7 +108,7 @@ class AbsoluteWatcher:
   ) -> None:
     self.seen: klt.Track | None = None
     self._seen_with = seen_with
-    self._tracker = absolute.AbsoluteTracker(tracking)
+    self._tracker = absolute.AbsoluteTracker(tracking, seen_with.bends)
     self._motion, self._wanders, self._least_s = motion, wanders, least_s
     self._segmenter: excursion.ExcursionSegmenter | None = None
     self.gave_up = False
