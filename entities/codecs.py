@@ -8,7 +8,7 @@ import numpy as np
 from waggle_tasks import eyes
 from waggle_tasks.protocol import camera as camera_lib
 
-_H264 = {'preset': 'superfast', 'tune': 'zerolatency', 'threads': '1'}
+_H264 = {'preset': 'ultrafast', 'tune': 'zerolatency', 'threads': '1'}
 
 
 class Codec(Protocol):
@@ -70,12 +70,12 @@ class H264:
 
   def picture(self, picture: np.ndarray) -> np.ndarray:
     """See `Codec`."""
-    frame = self._frame.from_ndarray(picture, format='rgb24')
-    frame = frame.reformat(format='yuv420p')
+    planes = cv2.cvtColor(picture, cv2.COLOR_RGB2YUV_I420)
+    frame = self._frame.from_ndarray(planes, format='yuv420p')
     frame.pts, self._count = self._count, self._count + 1
     for packet in self._encoder.encode(frame):
       for each in self._decoder.decode(packet):
-        self._last = each.to_ndarray(format='rgb24')
+        self._last = cv2.cvtColor(each.to_ndarray(), cv2.COLOR_YUV2RGB_I420)
     return picture if self._last is None else self._last
 
 

@@ -13,7 +13,9 @@ def test_a_slow_way_is_as_fast_as_it_says_and_comes_back() -> None:
   way = slide.Slide(0.02, math.radians(1), np.random.RandomState(0))
   times_s = np.arange(4.0, 44.0, 0.02)
   place, rate, _ = np.array([way.at(each) for each in times_s]).swapaxes(0, 1)
-  assert np.linalg.norm(rate[:, :3], axis=1).max() == pytest.approx(0.02, rel=1e-4)
+  assert np.linalg.norm(rate[:, :3], axis=1).max() == pytest.approx(
+    0.02, rel=1e-4
+  )
   assert np.abs(rate[:, 3]).max() == pytest.approx(math.radians(1), rel=1e-4)
   # From one end to the other it is one straight line.
   far = np.ptp(place[:, :3], axis=0)

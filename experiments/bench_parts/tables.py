@@ -10,6 +10,7 @@ from typing import Any
 
 from waggle_tasks.experiments.bench_parts import (
   cameras,
+  eye_costs,
   learners,
   loops,
   pilots,
@@ -263,6 +264,7 @@ def _workers(found: Mapping[int, Sequence[float]]) -> str:
 # How each part is told, and the ratios that follow from it.
 _PARTS: dict[str, tuple[Callable[..., str], Callable[..., Ratios]]] = {
   'cameras': (_cameras, _camera_ratios),
+  'eyes': (eye_costs.text, eye_costs.ratios),
   'stages': (_stages, lambda found: {}),
   'receivers': (_receivers, _receiver_ratios),
   'realtime': (_realtime, _realtime_ratios),
