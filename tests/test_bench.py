@@ -16,8 +16,8 @@ from waggle_tasks import registry, suites
 from waggle_tasks.agents import receivers
 from waggle_tasks.experiments.bench_parts import (
   cameras,
-  eye_costs,
   events,
+  eye_costs,
   learners,
   loops,
   pilots,

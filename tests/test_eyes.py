@@ -15,7 +15,7 @@ from waggle_tasks import (
   scenario,
   suites,
 )
-from waggle_tasks.experiments.record import changes, scenario_fields
+from waggle_tasks.experiments.record import changes, eye_fields, scenario_fields
 from waggle_tasks.experiments.studies import sweep_cases
 from waggle_tasks.protocol import reference
 
@@ -175,7 +175,10 @@ def test_a_grid_of_cameras_flies_each_with_its_own_numbers() -> None:
   assert {s.eye.read_noise for s in scenes} == {4.0}
   assert [s.eye.codec for s in scenes[::2]] == ['none', 'h264', 'jpeg']
   for each in drawn:
-    assert scenario_fields.make(each.values) == each.scene
+    whole = eye_fields.filled(
+      each.values, scenario_fields.defaults(), each.cell
+    )
+    assert scenario_fields.make(whole) == each.scene
 
 
 def test_a_suite_names_cameras() -> None:

@@ -7,7 +7,7 @@ together take less than 30 minutes on two cores.
 
 from typing import Any
 
-from waggle_tasks.experiments.claim_parts import kinds
+from waggle_tasks.experiments.claim_parts import eye_claims, kinds
 
 _DECOYS: dict[str, Any] = {
   'control': 'circles,diagonals,random_walk,navigation,swapped,repeated,'
@@ -263,6 +263,7 @@ CLAIMS = {
     'pictures', kinds.UNCHECKED,
     detail='a test compares pictures with every run',
   ),
+  **eye_claims.CLAIMS,
   'event-logs': kinds.Claim(
     'event-logs', kinds.ROWS, ('bench', '--check_events', '--suite=controls')
   ),

@@ -159,8 +159,7 @@ def draw(
   Raises:
     WaggleError: if the scenario breaks a rule.
   """
-  usual = scenario_fields.defaults()
-  values = eye_fields.filled({**base, **cell}, usual, cell)
+  values = {**base, **cell}
   drawn = hashlib.sha256(_seed_text(values, repeat).encode()).digest()
   values['seed'] = int.from_bytes(drawn[:4], 'big')
   if values['payload'] == RANDOM:
@@ -169,7 +168,8 @@ def draw(
     values['payload'] = f'{number:0{bits}b}'
   if values['bits'].startswith(RANDOM):
     values['bits'] = _drawn_bits(values['bits'], drawn)
-  return Sample(cell, repeat, values, scenario_fields.make(values))
+  whole = eye_fields.filled(values, scenario_fields.defaults(), cell)
+  return Sample(cell, repeat, values, scenario_fields.make(whole))
 
 
 def _drawn_bits(text: str, drawn: bytes) -> str:
