@@ -269,7 +269,7 @@ SIMULATING_MODULES = frozenset({
   'studies.link_study', 'studies.replay_flight', 'studies.runner',
   'studies.spoilers', 'studies.suite_case', 'studies.suite_study',
   'studies.sweep_flight', 'studies.sweep_study',
-  'video.film', 'video.lens', 'video.shots',
+  'video.eye_shots', 'video.film', 'video.lens', 'video.shots',
 })  # fmt: skip
 IMPORT_ALL = """
 import importlib, sys

@@ -7,7 +7,7 @@ CLAIMS = {
     'eyes', kinds.CELLS,
     (
       'sweep', '--receiver=joint', '--language=swift', '--observers=1',
-      '--payload=random', '--duration_s=7.5', '--repeats=4',
+      '--payload=random', '--duration_s=7.5', '--repeats=3',
       '--grid=eye=ai_deck',
     ),
   ),
