@@ -76,6 +76,9 @@ class Shutter:
     )
     self._rows, self._takes_s = rows, eye.takes_s
     self._states: deque[_State] = deque()
+    # The last picture, and what of it is not its room.
+    self._picture = np.empty(0, np.uint8)
+    self._changed, self._version = (0, 0, 0, 0), 0
 
   def begin(self, physics: mjcf.Physics) -> None:
     """Forgets what was before an episode."""
@@ -100,7 +103,7 @@ class Shutter:
       draw: Draws it as it is.
 
     Returns:
-      (H, W, 3) uint8, not to be written to.
+      (H, W, 3) uint8, not to be written to, and used again by the next call.
     """
     self.note(physics)
     numbers = np.stack([each.numbers for each in self._states])
@@ -117,15 +120,17 @@ class Shutter:
   def _blended(
     self, physics: mjcf.Physics, places: list[np.ndarray], draw: Draw
   ) -> np.ndarray:
-    _put(physics, places[0])
-    first = draw()
+    first = _at(physics, places[0], draw)
     version, parts = first.version, {0: _part(first)}
-    picture = first.picture.copy()
+    # Where the room was drawn anew, it may be so for each moment.
+    kept = first.picture.copy() if version != self._version else None
     for number in (len(places) - 1, *range(1, len(places) - 1)):
-      _put(physics, places[number])
-      drawn = draw()
+      drawn = _at(physics, places[number], draw)
       if drawn.version != version:
-        return self._whole(picture, drawn.picture)
+        self._version, last = drawn.version, drawn.picture.copy()
+        if kept is None:
+          kept = _at(physics, places[0], draw).picture.copy()
+        return self._whole(kept, last)
       parts[number] = _part(drawn)
     around = windows.around_all(window for window, _ in parts.values())
     left, top, _, _ = around
@@ -135,9 +140,13 @@ class Shutter:
       inside = windows.slices(windows.shifted(window, -left, -top))
       share = self._share(self._shares, number, window)
       total[inside] += share * (part - behind[inside])
-    picture[:] = drawn.room
-    picture[windows.slices(around)] = total
-    return picture
+    if kept is not None or not self._picture.size:
+      self._picture = drawn.room.copy()
+    before = windows.slices(self._changed)
+    self._picture[before] = drawn.room[before]
+    self._picture[windows.slices(around)] = total
+    self._version, self._changed = version, around
+    return self._picture
 
   def _whole(self, first: np.ndarray, last: np.ndarray) -> np.ndarray:
     """The picture of an eye that moves, by its first and its last moment."""
@@ -155,6 +164,12 @@ class Shutter:
     return of[self._rows[rows, columns if wide else slice(None)], number][
       ..., None
     ]
+
+
+def _at(physics: mjcf.Physics, place: np.ndarray, draw: Draw) -> Drawn:
+  """The scene with everything at a place, see `_put`."""
+  _put(physics, place)
+  return draw()
 
 
 def _part(drawn: Drawn) -> tuple[windows.Window, np.ndarray]:
