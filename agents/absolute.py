@@ -7,7 +7,7 @@ import numpy as np
 
 from waggle_tasks.agents import blobs as blobs_lib
 from waggle_tasks.agents import config as config_lib
-from waggle_tasks.agents import difference, hover, klt, pace, parallax
+from waggle_tasks.agents import difference, hover, klt, pace, parallax, turns
 from waggle_tasks.agents import ghost as ghost_lib
 
 _REPAIRS = 25  # Images that the background behind the hover is made from.
@@ -28,9 +28,20 @@ class AbsoluteTracker:
     ghost: Where it hovered; None as long as it has not moved.
   """
 
-  def __init__(self, config: config_lib.Differencing) -> None:
-    self._config = config
-    self._hover = hover.Hover(config)
+  def __init__(
+    self,
+    config: config_lib.Differencing,
+    geometry: turns.Geometry | None = None,
+  ) -> None:
+    """Makes the tracker.
+
+    Args:
+      config: Its numbers.
+      geometry: How pictures move when their camera turns; None for that of a
+        pinhole.
+    """
+    self._config, self._geometry = config, geometry
+    self._hover = hover.Hover(config, geometry)
     self._follower: Follower | None = None
     self.ghost: ghost_lib.Ghost | None = None
     self.anchor_px: np.ndarray | None = None
@@ -50,7 +61,8 @@ class AbsoluteTracker:
       return self._wait(image, time_s)
     track = self._follower.step(image, time_s)
     if self._follower.lost_s(time_s) > self._config.relearn_s:
-      self._hover, self._follower = hover.Hover(self._config), None
+      self._hover = hover.Hover(self._config, self._geometry)
+      self._follower = None
       self.ghost = self.anchor_px = None
     return [track]
 

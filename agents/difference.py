@@ -231,3 +231,11 @@ def middle(image: np.ndarray, side: int) -> Box:
     slice(max((height - side) // 2, 0), (height + side) // 2),
     slice(max((width - side) // 2, 0), (width + side) // 2),
   )
+
+
+def strict(known: Background, side: int) -> Background:
+  """A background without slack, which would hide a ghost, in the middle."""
+  if (slack := known.slack) is not None:
+    slack = slack.copy()
+    slack[middle(slack, side)] = 0
+  return Background(known.grey, known.variance, slack)

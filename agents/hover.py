@@ -55,8 +55,12 @@ class Hover:
     visible: Whether there is something, at rest, in the last image.
   """
 
-  def __init__(self, config: config_lib.Differencing) -> None:
-    self._config = config
+  def __init__(
+    self,
+    config: config_lib.Differencing,
+    geometry: turns.Geometry | None = None,
+  ) -> None:
+    self._config, self._geometry = config, geometry
     self._slack_px = 0.0
     self._speckled = False
     self._forget()
@@ -170,7 +174,7 @@ class Hover:
         self._since_s = time_s
         config = self._config.swaying if self._slack_px else self._config
         separation = self._separation = ghost.Separation(
-          self._detector, _strict(background), config,
+          self._detector, difference.strict(background, _REST_PX), config,
           difference.middle(image, _REST_PX), middle,
         )  # fmt: skip
         whole = difference.grey(image)
@@ -201,8 +205,8 @@ class Hover:
   def _room(self, image: np.ndarray) -> alignment.Alignment:
     """Brings pictures to this one, whichever way their camera has turned."""
     height, width = image.shape[:2]
-    geometry = turns.Turns((width, height), self._config.focal_px)
-    return alignment.Alignment(image, geometry)
+    pinhole = turns.Turns((width, height), self._config.focal_px)
+    return alignment.Alignment(image, self._geometry or pinhole)
 
   def _know_target(self, grey: np.ndarray) -> None:
     self._rest = rest = grey[difference.middle(grey, _REST_PX)]
@@ -289,11 +293,3 @@ class Hover:
     ):
       self._forget()
     return None
-
-
-def _strict(known: difference.Background) -> difference.Background:
-  """A background without slack, which would hide a ghost, in the middle."""
-  if (slack := known.slack) is not None:
-    slack = slack.copy()
-    slack[difference.middle(slack, _REST_PX)] = 0
-  return difference.Background(known.grey, known.variance, slack)

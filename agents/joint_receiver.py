@@ -10,6 +10,7 @@ import numpy as np
 
 from waggle_tasks.agents import (
   absolute,
+  calibrated,
   description,
   group,
   history,
@@ -108,7 +109,10 @@ class JointReceiver:
     # A clock may be slow, and an image late.
     self._late_s = agreement.tolerance.clock_rate * self._length_s + _LATE_S
     self._collected = packets.Collector(agreement.packets or packets.Packets())
-    self._tracker: watchers.Tracker = absolute.AbsoluteTracker(config.tracking)
+    self._seen_with = calibrated.Calibrated(agreement.camera)
+    self._tracker: watchers.Tracker = absolute.AbsoluteTracker(
+      config.tracking, self._seen_with.bends
+    )
     self._images = inputs.Images()
     self._forget()
     self.track: klt.Track | None = None
@@ -157,10 +161,14 @@ class JointReceiver:
     self, image: np.ndarray, time_s: float
   ) -> tuple[receiver.Event, ...]:
     """What an image confirms that may be one of this stream."""
-    tracks = self._tracker.step(image, time_s)
-    ghost = self._tracker.ghost
-    anchor_px = None if ghost is None else ghost.anchor_px
-    return self.follow(tracks, anchor_px, time_s)
+    found = self._tracker.step(self._seen_with.part(image), time_s)
+    tracks = [self._seen_with.levelled(each) for each in found]
+    home, anchor_px = self._tracker.ghost, None
+    if home is not None:
+      anchor_px = self._seen_with.place(home.anchor_px)
+    events = self.follow(tracks, anchor_px, time_s)
+    self.track = self._seen_with.seen(found[-1])
+    return events
 
   def follow(
     self,
@@ -196,8 +204,8 @@ class JointReceiver:
     for track in tracks:
       self._history.add(track)
     self._history.forget(time_s, 2 * (self._length_s + self._late_s))
-    found = self._starts.step(tracks)
-    events = [self._begun(each, time_s) for each in found]
+    begun = self._starts.step(tracks)
+    events = [self._begun(each, time_s) for each in begun]
     return (*events, *self._read(time_s))
 
   def _begun(self, start: lock.Lock, time_s: float) -> receiver.Event:

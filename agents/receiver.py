@@ -21,6 +21,7 @@ from waggle_tasks.agents import (
   watchers,
 )
 from waggle_tasks.protocol import agreement as agreement_lib
+from waggle_tasks.protocol import camera as camera_lib
 from waggle_tasks.protocol import clock as clock_lib
 from waggle_tasks.protocol import frame, payload
 from waggle_tasks.protocol.symbols import Symbol
@@ -165,7 +166,7 @@ class StagedReceiver:
     config = group.zoomed(config or self.DEFAULT, agreement.camera.zoom)
     clock = agreement.clock if config.framing.clock else None
     least_s = 0.0 if clock is None else clock.least_s
-    self._watcher = self._watch(config, least_s)
+    self._watcher = self._watch(config, least_s, agreement.camera)
     templates = views.templates(agreement, config.views)
     self._recogniser = recogniser.Recogniser(config.recognition, templates)
     blind_s = 0.0
@@ -185,10 +186,10 @@ class StagedReceiver:
     self.segment: segmenter.Segment | None = None
 
   def _watch(
-    self, config: config_lib.Config, least_s: float
+    self, config: config_lib.Config, least_s: float, camera: camera_lib.Camera
   ) -> watchers.Watcher:
     """What follows the target, see `watchers.make`."""
-    return watchers.make(config, least_s)
+    return watchers.make(config, least_s, camera)
 
   @classmethod
   def describe(
@@ -227,17 +228,18 @@ class StagedReceiver:
   def _follow(self, image: np.ndarray, time_s: float) -> tuple[Event, ...]:
     """What an image confirms that may be one of this stream."""
     watcher = self._watcher
-    self.track, self.segment = watcher.step(image, time_s)
+    track, self.segment = watcher.step(image, time_s)
+    self.track = watcher.seen
     if watcher.gave_up:
       self._sight.give_up()
-    self._sight.step(self.track)
+    self._sight.step(track)
     events = []
     if self.segment is not None:
       found = self._recogniser.recognise(self.segment)
       moment = self._sight.event(self.segment.begin_s, self.segment.end_s)
       events.append(self._event(time_s, found.symbol, moment, found))
     if self._stillness.step(
-      self.track, watcher.anchor_px, watcher.moving, watcher.wander
+      track, watcher.anchor_px, watcher.moving, watcher.wander
     ):
       if self._may_rest(time_s):
         moment = self._sight.event(self._stillness.since_s, time_s)

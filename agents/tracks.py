@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from waggle_tasks.agents import config as config_lib
 from waggle_tasks.agents import (
+  calibrated,
   group,
   joint_config,
   joint_receiver,
@@ -17,7 +17,9 @@ from waggle_tasks.agents import (
   track_follower,
   watchers,
 )
+from waggle_tasks.agents import config as config_lib
 from waggle_tasks.protocol import agreement as agreement_lib
+from waggle_tasks.protocol import camera as camera_lib
 
 READERS = 'absolute', 'view_bank', 'joint'
 
@@ -69,7 +71,7 @@ class StagedTracks(receiver.StagedReceiver):
     super().__init__(agreement, dataclasses.replace(config, stillness=calm))
 
   def _watch(
-    self, config: config_lib.Config, least_s: float
+    self, config: config_lib.Config, least_s: float, camera: camera_lib.Camera
   ) -> watchers.Watcher:
     """What cuts the track."""
     match config.tracking, config.motion:
@@ -79,9 +81,10 @@ class StagedTracks(receiver.StagedReceiver):
       ):
         follower = track_follower.TrackFollower(tracking, self._zoom)
         return watchers.AbsoluteWatcher(
-          follower, motion, config.wandering, least_s
-        )
-    return watchers.make(config, least_s)
+          follower, motion, config.wandering, least_s,
+          calibrated.Calibrated(camera),
+        )  # fmt: skip
+    return watchers.make(config, least_s, camera)
 
   def step(
     self, image: np.ndarray, time_s: float
@@ -123,7 +126,7 @@ def make(
   name: str,
   agreement: agreement_lib.Agreement = agreement_lib.Agreement(),
 ) -> receiver.Receiver:
-  """Makes a reader of tracks.
+  """Makes a reader of tracks, whose places are those of a level pinhole.
 
   Args:
     name: A receiver as `receivers.make` takes it, of those that follow places:
@@ -134,6 +137,9 @@ def make(
     ReceiverError: as `receivers.make` does, and if it follows pixels.
   """
   made, config = receivers.configured(name)
+  known = agreement.camera
+  pinhole = camera_lib.Camera(known.columns, known.rows, known.focal_px)
+  agreement = dataclasses.replace(agreement, camera=pinhole)
   work: Any = None  # A `receiver.Receiver`.
   if made is joint_receiver.JointReceiver:
     if isinstance(config, joint_config.Config):

@@ -6,6 +6,7 @@ import numpy as np
 
 from waggle_tasks.agents import (
   absolute,
+  calibrated,
   excursion,
   group,
   klt,
@@ -14,6 +15,7 @@ from waggle_tasks.agents import (
   wandering,
 )
 from waggle_tasks.agents import config as config_lib
+from waggle_tasks.protocol import camera as camera_lib
 
 
 class Watcher(Protocol):
@@ -21,9 +23,11 @@ class Watcher(Protocol):
 
   Attributes:
     gave_up: Whether it has just given up the target, to seek one anew.
+    seen: The target in the last image, in its own pixels.
   """
 
   gave_up: bool
+  seen: klt.Track | None
 
   @property
   def anchor_px(self) -> np.ndarray | None:
@@ -43,7 +47,10 @@ class Watcher(Protocol):
   def step(
     self, image: np.ndarray, time_s: float
   ) -> tuple[klt.Track, segmenter.Segment | None]:
-    """Takes an image; the target in it, and the motion that it ended."""
+    """Takes an image; the target in it, and the motion that it ended.
+
+    Both as a level pinhole would see them.
+    """
     ...
 
 
@@ -53,15 +60,21 @@ class FlowWatcher:
   gave_up = False  # It stays where it lost the target.
 
   def __init__(
-    self, tracking: config_lib.Tracking, motion: config_lib.Motion
+    self,
+    tracking: config_lib.Tracking,
+    motion: config_lib.Motion,
+    seen_with: calibrated.Calibrated,
   ) -> None:
+    self.seen: klt.Track | None = None
+    self._seen_with = seen_with
     self._tracker = klt.KltTracker(tracking)
     self._segmenter = segmenter.Segmenter(motion, tracking)
 
   @property
   def anchor_px(self) -> np.ndarray | None:
     """See `Watcher`."""
-    return self._tracker.anchor_px
+    anchor_px = self._tracker.anchor_px
+    return None if anchor_px is None else self._seen_with.place(anchor_px)
 
   @property
   def moving(self) -> bool:
@@ -76,7 +89,9 @@ class FlowWatcher:
     self, image: np.ndarray, time_s: float
   ) -> tuple[klt.Track, segmenter.Segment | None]:
     """See `Watcher`."""
-    track = self._tracker.step(image, time_s)
+    found = self._tracker.step(self._seen_with.part(image), time_s)
+    self.seen = self._seen_with.seen(found)
+    track = self._seen_with.levelled(found)
     return track, self._segmenter.step(track)
 
 
@@ -121,8 +136,10 @@ class AbsoluteWatcher:
     motion: config_lib.Excursion,
     wanders: wandering.Wandering,
     least_s: float,
+    seen_with: calibrated.Calibrated,
   ) -> None:
-    self._tracker = tracker
+    self.seen: klt.Track | None = None
+    self._seen_with, self._tracker = seen_with, tracker
     self._motion, self._wanders, self._least_s = motion, wanders, least_s
     self._segmenter: excursion.ExcursionSegmenter | None = None
     self.gave_up = False
@@ -130,7 +147,8 @@ class AbsoluteWatcher:
   @property
   def anchor_px(self) -> np.ndarray | None:
     """See `Watcher`."""
-    return self._tracker.anchor_px
+    anchor_px = self._tracker.anchor_px
+    return None if anchor_px is None else self._seen_with.place(anchor_px)
 
   @property
   def moving(self) -> bool:
@@ -147,7 +165,10 @@ class AbsoluteWatcher:
     self, image: np.ndarray, time_s: float
   ) -> tuple[klt.Track, segmenter.Segment | None]:
     """See `Watcher`."""
-    tracks, ghost = self._tracker.step(image, time_s), self._tracker.ghost
+    found = self._tracker.step(self._seen_with.part(image), time_s)
+    self.seen = self._seen_with.seen(found[-1])
+    tracks = [self._seen_with.levelled(each) for each in found]
+    ghost = self._tracker.ghost
     self.gave_up = ghost is None and self._segmenter is not None
     if ghost is None:
       self._segmenter = None
@@ -155,8 +176,8 @@ class AbsoluteWatcher:
     if self._segmenter is None:
       self._segmenter = excursion.ExcursionSegmenter(
         self._motion,
-        ghost.anchor_px,
-        ghost.width_px,
+        self._seen_with.place(ghost.anchor_px),
+        self._seen_with.scale(ghost.anchor_px) * ghost.width_px,
         self._wanders,
         self._least_s,
       )
@@ -165,25 +186,33 @@ class AbsoluteWatcher:
     return tracks[-1], next(filter(None, segments), None)
 
 
-def make(config: config_lib.Config, least_s: float = 0.0) -> Watcher:
+def make(
+  config: config_lib.Config,
+  least_s: float = 0.0,
+  camera: camera_lib.Camera = camera_lib.Camera(),
+) -> Watcher:
   """The watcher of a configuration.
 
   Args:
     config: The receiver's numbers.
     least_s: See `excursion.ExcursionSegmenter`.
+    camera: What images come from.
 
   Raises:
     ReceiverError: if its tracker and its segmenter do not go together.
   """
+  seen_with = calibrated.Calibrated(camera)
   match config.tracking, config.motion:
     case (
       config_lib.Differencing() as tracking,
       config_lib.Excursion() as motion,
     ):
-      tracker = absolute.AbsoluteTracker(tracking)
-      return AbsoluteWatcher(tracker, motion, config.wandering, least_s)
+      return AbsoluteWatcher(
+        absolute.AbsoluteTracker(tracking, seen_with.bends),
+        motion, config.wandering, least_s, seen_with,
+      )  # fmt: skip
     case config_lib.Tracking() as tracking, config_lib.Motion() as motion:
-      return FlowWatcher(tracking, motion)
+      return FlowWatcher(tracking, motion, seen_with)
   raise group.ReceiverError(
     '`motion` must be an Excursion with Differencing, and a Motion with'
     f' Tracking: got {config.motion!r}'

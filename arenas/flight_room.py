@@ -64,6 +64,7 @@ class FlightRoom(composer.Arena):
     look: appearance.Appearance | None = None,
     name: str = 'flight_room',
     agreement: agreement_lib.Agreement = agreement_lib.Agreement(),
+    drawn_px: tuple[int, int] | None = None,
   ) -> None:
     """Builds the empty room.
 
@@ -71,8 +72,11 @@ class FlightRoom(composer.Arena):
       look: What it looks like; the default appearance if None.
       name: Model name.
       agreement: What both sides know: the camera, the rate and the height.
+      drawn_px: Width and height of the largest picture that is drawn for
+        observers; None for those of the agreed camera.
     """
     super()._build(name=name)
+    self._drawn_px = drawn_px or agreement.camera.size
     self._look = look or appearance.Appearance()
     self._agreement = agreement
     self._positions_m: list[tuple[float, float, float]] = []
@@ -165,9 +169,7 @@ class FlightRoom(composer.Arena):
     root.compiler.boundinertia = 0.0
     width_px, height_px = (
       _SAMPLES * max(sides)
-      for sides in zip(
-        shared_views.SIZE_PX, self._agreement.camera.size, strict=True
-      )
+      for sides in zip(shared_views.SIZE_PX, self._drawn_px, strict=True)
     )
     getattr(root.visual, 'global').set_attributes(
       offwidth=width_px, offheight=height_px

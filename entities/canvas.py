@@ -28,6 +28,7 @@ class Canvas:
     boxes: (M, 4) windows that hold the parts.
     shown: The windows of the picture, each with the parts that it holds.
     looks: Version of the model's looks in it; 0 when nothing was drawn.
+    rooms: How often the room was drawn.
     lens: See `lens`.
   """
 
@@ -41,6 +42,7 @@ class Canvas:
     default_factory=dict
   )
   looks: int = 0
+  rooms: int = 0
   lens: tuple[float, float, bool] = (0.0, 0.0, False)
 
   @property

@@ -124,9 +124,11 @@ class Light:
       gain *= chosen.step_gain
     return gain
 
-  def __call__(self, image: np.ndarray, frame: int) -> None:
-    """Scales an image."""
-    gain = self.gain(frame)
+  def __call__(
+    self, image: np.ndarray, frame: int, exposure: float = 1.0
+  ) -> None:
+    """Scales an image, also by what a camera's exposure is."""
+    gain = self.gain(frame) * exposure
     if gain != 1:
       cv2.convertScaleAbs(image, dst=image, alpha=gain)
 

@@ -1,6 +1,7 @@
 """The observer's camera as a composer observable."""
 
 from collections.abc import Callable
+import functools
 import weakref
 
 from dm_control import mjcf
@@ -9,11 +10,13 @@ from dm_env import specs
 import mujoco
 import numpy as np
 
-from waggle_tasks.entities import renderer
+from waggle_tasks.entities import renderer, shutter
 
 # Takes the renderer's own picture, which it must not write to, and returns what
 # comes of it.
 Spoil = Callable[[np.ndarray], np.ndarray]
+# Takes what draws the scene as it is, and returns the picture that is exposed.
+Expose = Callable[[mjcf.Physics, shutter.Draw], np.ndarray]
 
 # One renderer, and so one scene and set of buffers, for each live Physics.
 _RENDERERS: weakref.WeakKeyDictionary = weakref.WeakKeyDictionary()
@@ -45,13 +48,15 @@ class _Shown:
 
 
 class EyeCamera(observable.Observable):
-  """Images of one camera, (H, W, 3) uint8 RGB, of its resolution."""
+  """Images of one camera, (H, W, 3) uint8 RGB."""
 
   def __init__(
     self,
     camera: mjcf.Element,
     incremental: bool = True,
     spoil: Spoil = lambda picture: picture,
+    expose: Expose = lambda _, draw: draw().picture,
+    size: tuple[int, int] | None = None,
   ) -> None:
     """Makes the observable.
 
@@ -63,6 +68,8 @@ class EyeCamera(observable.Observable):
       camera: The MJCF camera.
       incremental: Whether to redraw only what changed.
       spoil: What happens to pictures on their way.
+      expose: What takes the picture of the camera.
+      size: Width and height of what comes of it; None for the camera's own.
     """
     super().__init__(
       update_interval=1,
@@ -73,12 +80,13 @@ class EyeCamera(observable.Observable):
     )
     self._camera = camera
     self._incremental = incremental
-    self._spoil = spoil
+    self._spoil, self._expose = spoil, expose
+    self._size = size
 
   @property
   def array_spec(self) -> specs.BoundedArray:
     """The image's shape, type and range."""
-    width, height = map(int, self._camera.resolution)
+    width, height = map(int, self._size or self._camera.resolution)
     shape = (height, width, 3)
     return specs.BoundedArray(shape, np.uint8, 0, 255, self._camera.name)
 
@@ -106,11 +114,13 @@ class EyeCamera(observable.Observable):
     camera_id = physics.bind(self._camera).element_id
     model, data = physics.model.ptr, physics.data.ptr
 
+    draw = functools.partial(eyes.drawn, camera_id, self._incremental)
+
     def take() -> np.ndarray:
       # A state that was just set shows, though nothing followed from it yet.
       mujoco.mj_kinematics(model, data)
       mujoco.mj_camlight(model, data)
-      image = self._spoil(eyes.image(camera_id, self._incremental))
+      image = self._spoil(self._expose(physics, draw))
       # A corruptor may write to what it gets; the picture is kept for later.
       return image.copy() if self.corruptor else image
 

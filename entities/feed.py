@@ -5,8 +5,8 @@ import dataclasses
 
 import numpy as np
 
-from waggle_tasks import sensor
-from waggle_tasks.entities import corruptors
+from waggle_tasks import eyes, sensor
+from waggle_tasks.entities import codecs, corruptors, lenses, sensors
 from waggle_tasks.protocol import agreement as agreement_lib
 
 
@@ -37,6 +37,7 @@ class Feed:
     chosen: sensor.Sensor,
     random_state: np.random.RandomState,
     agreement: agreement_lib.Agreement = agreement_lib.Agreement(),
+    eye: eyes.Eye = eyes.Eye(),
   ) -> None:
     """Makes the feed, before the first frame.
 
@@ -44,12 +45,24 @@ class Feed:
       chosen: What spoils it.
       random_state: What its own draws begin with.
       agreement: What both sides know: the camera and the rate.
+      eye: The camera, beyond that.
+
+    Raises:
+      EyeError: if its pictures cannot be coded here.
     """
     seed = int(random_state.randint(2**32, dtype=np.uint32))
     # Each kind draws from its own, so that none of them changes another.
-    light, noise, self._draws = (
-      np.random.RandomState([seed, kind]) for kind in range(3)
+    light, noise, self._draws, shaking, pixels = (
+      np.random.RandomState([seed, kind]) for kind in range(5)
     )
+    self._projection: lenses.Projection | None = None
+    self._sensor: sensors.Sensor | None = None
+    self._codec: codecs.Codec | None = None
+    if not eye.is_ideal:
+      seen_with, frame_s = agreement.camera, agreement.frame_s
+      self._projection = lenses.Projection(seen_with, eye, shaking)
+      self._sensor = sensors.Sensor(eye, seen_with, frame_s, pixels)
+      self._codec = codecs.make(eye, seen_with)
     self._chosen, self._agreement = chosen, agreement
     self._light = corruptors.Light(chosen, light, agreement)
     self._blur = corruptors.Blur(chosen.exposure_s / agreement.frame_s)
@@ -89,12 +102,16 @@ class Feed:
     """Takes this frame's picture and returns the one that comes."""
     if self._exposed_frame < self._frame:  # Composer may ask again.
       self._exposed_frame = self._frame
-      image = picture.copy()
-      self._light(image, self._frame)
+      if self._projection is None or self._sensor is None:
+        image, exposure = picture.copy(), 1.0
+      else:
+        time_s = self._frame * self._agreement.frame_s
+        image = self._projection.picture(picture, time_s)
+        exposure = self._sensor.gain
+      self._light(image, self._frame, exposure)
       self._blur(image)
       if not self._taken.pixels.size:
-        self._read_out(image)
-        self._taken.pixels = image
+        self._taken.pixels = self._read_out(image)
     # Of a frame in which nobody asked there is no picture but the present one.
     come = self._delivered.picture.pixels
     return come if come.size else self._taken.pixels
@@ -104,12 +121,15 @@ class Feed:
     """The time of the image that comes in this frame."""
     return self._delivered.time_s
 
-  def _read_out(self, image: np.ndarray) -> None:
+  def _read_out(self, image: np.ndarray) -> np.ndarray:
     chosen = self._chosen
+    if self._sensor is not None:
+      image = self._sensor.picture(image)
     if self._noise is not None:
       self._noise(image)
     if self._is_black():
       corruptors.blacken(image, chosen.blackout_share)
+    return image if self._codec is None else self._codec.picture(image)
 
   def _is_black(self) -> bool:
     chosen, frame_s = self._chosen, self._agreement.frame_s

@@ -6,8 +6,9 @@ from dm_control import composer, mjcf
 from dm_control.composer.observation import observable
 import numpy as np
 
+from waggle_tasks import eyes
 from waggle_tasks import sensor as sensor_lib
-from waggle_tasks.entities import crazyflie, eye, feed, optics
+from waggle_tasks.entities import crazyflie, eye, feed, lenses, optics, shutter
 from waggle_tasks.protocol import agreement as agreement_lib
 from waggle_tasks.protocol import camera as camera_lib
 
@@ -28,6 +29,7 @@ class Observer(crazyflie.Crazyflie):
     sensor: sensor_lib.Sensor = sensor_lib.Sensor(),
     agreement: agreement_lib.Agreement = agreement_lib.Agreement(),
     dynamics: str = 'ideal',
+    looks_with: eyes.Eye = eyes.Eye(),
   ) -> None:
     """Builds the model.
 
@@ -38,15 +40,21 @@ class Observer(crazyflie.Crazyflie):
       sensor: What spoils its images.
       agreement: What both sides know: its camera and its rate.
       dynamics: One of `limits.DYNAMICS`.
+      looks_with: What its camera is, beyond that of the agreement.
     """
     super()._build(name, crazyflie.AZURE, dynamics == 'rotors')
     self._incremental = camera == 'incremental'
+    seen_with = agreement.camera
+    drawn = lenses.drawn(seen_with, looks_with)
     self._eye = self.airframe.add(
       'camera', name='eye', pos=(eye_offset_m, 0, 0),
-      xyaxes=(0, -1, 0, 0, 0, 1), fovy=agreement.camera.fovy_deg,
-      resolution=agreement.camera.size,
+      xyaxes=_axes(seen_with), fovy=drawn.fovy_deg, resolution=drawn.size,
     )  # fmt: skip
-    self._agreement = agreement
+    self._agreement, self._looks_with = agreement, looks_with
+    self._shutter: shutter.Shutter | None = None
+    if looks_with.takes_s:
+      rows = lenses.rows_of(seen_with, looks_with)
+      self._shutter = shutter.Shutter(looks_with, seen_with, rows)
     self.sensor = sensor
     self._feed: feed.Feed | None = None
     self.error_m = np.zeros(3)
@@ -72,11 +80,27 @@ class Observer(crazyflie.Crazyflie):
   def initialize_episode(
     self, physics: mjcf.Physics, random_state: np.random.RandomState
   ) -> None:
-    """Begins this episode's feed, if anything is to be spoilt."""
+    """Begins this episode's feed, if anything is to be spoilt.
+
+    Raises:
+      EyeError: if its pictures cannot be coded here.
+    """
     self._feed = None
-    if not self.sensor.is_clean:
-      self._feed = feed.Feed(self.sensor, random_state, self._agreement)
+    if not (self.sensor.is_clean and self._looks_with.is_ideal):
+      self._feed = feed.Feed(
+        self.sensor, random_state, self._agreement, self._looks_with
+      )
       self._feed.advance(float(_time_s(physics)))
+    if self._shutter is not None:
+      self._shutter.begin(physics)
+
+  def after_substep(
+    self, physics: mjcf.Physics, random_state: np.random.RandomState
+  ) -> None:
+    """Notes where everything is, for what is exposed meanwhile."""
+    del random_state
+    if self._shutter is not None:
+      self._shutter.note(physics)
 
   def after_step(
     self, physics: mjcf.Physics, random_state: np.random.RandomState
@@ -95,11 +119,28 @@ class Observer(crazyflie.Crazyflie):
     """What comes of the eye's picture now, (H, W, 3) uint8 each."""
     return picture if self._feed is None else self._feed.image(picture)
 
+  def expose(self, physics: mjcf.Physics, draw: shutter.Draw) -> np.ndarray:
+    """The picture that the eye takes now, (H, W, 3) uint8."""
+    if self._shutter is None:
+      return draw().picture
+    return self._shutter.expose(physics, draw)
+
   def image_time_s(self, physics: mjcf.Physics) -> np.ndarray:
     """The time, (), that the image that comes now is told to be of."""
     if self._feed is None:
       return _time_s(physics)
     return np.asarray(self._feed.time_s)
+
+
+def _axes(seen_with: camera_lib.Camera) -> tuple[float, ...]:
+  """Right and up of a camera in the axes of its vehicle: ahead, left, up."""
+  right, down = seen_with.mount[:, 0], seen_with.mount[:, 1]
+  axes = [
+    number + 0.0  # No negative zeros.
+    for (x, y, z), sign in ((right, 1), (down, -1))
+    for number in (sign * z, -sign * x, -sign * y)
+  ]
+  return tuple(map(float, axes))
 
 
 def _time_s(physics: mjcf.Physics) -> np.ndarray:
@@ -126,7 +167,10 @@ class ObserverObservables(crazyflie.CrazyflieObservables):
   def camera(self) -> eye.EyeCamera:
     """Image of the eye: (H, W, 3) uint8 RGB."""
     entity = self._entity
-    return eye.EyeCamera(entity.eye, entity.incremental, entity.spoil)
+    return eye.EyeCamera(
+      entity.eye, entity.incremental, entity.spoil, entity.expose,
+      entity.lens.size,
+    )  # fmt: skip
 
   @composer.observable
   def position_m(self) -> observable.MJCFFeature:

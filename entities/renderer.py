@@ -25,7 +25,7 @@ import mujoco
 import numpy as np
 
 from waggle_tasks.entities import canvas as canvas_lib
-from waggle_tasks.entities import forks, framebuffer, rigid, windows
+from waggle_tasks.entities import forks, framebuffer, rigid, shutter, windows
 
 _SAMPLES = 2  # Samples per pixel along each axis.
 _HIDDEN_GROUP = 5  # Not drawn by default (MuJoCo, mjvOption.geomgroup).
@@ -143,6 +143,13 @@ class Renderer:
         context.call(self._redraw, camera_id, canvas, moved, anew)
     return canvas.pixels
 
+  def drawn(self, camera_id: int, incremental: bool = True) -> shutter.Drawn:
+    """The camera's picture now, see `image`, and what of it is its room."""
+    pixels = self.image(camera_id, incremental)
+    canvas = self._canvases[camera_id]
+    window = windows.around_all(canvas.shown)
+    return shutter.Drawn(pixels, canvas.room, window, canvas.rooms)
+
   def _watch_looks(self) -> None:
     looks = [field.tobytes() for field in self._look_fields]
     if looks != self._looks:
@@ -201,6 +208,7 @@ class Renderer:
         self._draw(canvas, (0, 0, *canvas.size), canvas.room, hidden)
         canvas.pixels[:] = canvas.room
         canvas.shown = {}
+        canvas.rooms += 1
       changed = set(moved)
       kept = {
         window: parts

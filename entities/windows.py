@@ -1,6 +1,7 @@
 """Rectangles of a picture: left, top, right and bottom edge in pixels."""
 
-from collections.abc import Hashable, Mapping, Sequence
+from collections.abc import Hashable, Iterable, Mapping, Sequence
+import functools
 from typing import TypeVar
 
 import numpy as np
@@ -64,6 +65,18 @@ def merge(
       window = _union(window, near[0])
     out[window] = names
   return out
+
+
+def around_all(several: Iterable[Window]) -> Window:
+  """The window around several; an empty one around none."""
+  parts = [each for each in several if touch(each, each)]
+  return functools.reduce(_union, parts) if parts else (0, 0, 0, 0)
+
+
+def shifted(window: Window, right_px: int, down_px: int) -> Window:
+  """A window as counted from elsewhere."""
+  left, top, right, bottom = window
+  return left + right_px, top + down_px, right + right_px, bottom + down_px
 
 
 def _union(a: Window, b: Window) -> Window:

@@ -20,9 +20,9 @@ _REPEATS = flags.DEFINE_integer('repeats', 3, 'How often each part is run.')
 _ONLY = flags.DEFINE_list(
   'only',
   [],
-  'Only these parts: cameras, stages, receivers, realtime, languages, dynamics,'
-  ' fidelities, learners, which takes the extra rl, observers, memory,'
-  ' workers.',
+  'Only these parts: cameras, eyes, stages, receivers, realtime, languages,'
+  ' dynamics, fidelities, learners, which takes the extra rl, observers,'
+  ' memory, workers.',
 )
 _RECEIVER = flags.DEFINE_multi_string('receiver', None, '')
 # absl adds a sentence to the help of a flag that may be given again.

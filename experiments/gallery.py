@@ -4,7 +4,8 @@ From one default broadcast: composite.png is a picture of its composite video,
 gestures.png the four gestures as the middle observer sees them: the performer
 at equal times, and the track that the receiver made of it. With --sweep or
 --rooms it flies nothing: envelope.png, and envelope.svg, are the maps of these
-sweeps, and rooms.svg tells which part of this project imports which.
+sweeps, and rooms.svg tells which part of this project imports which. With
+--eyes it is eyes.png, what each camera that has a name sees.
 """
 
 from collections.abc import Sequence
@@ -29,6 +30,9 @@ _OUTPUT = flags.DEFINE_string(
 _RECEIVER = receiver_flag.define()
 _SWEEP = flags.DEFINE_list('sweep', [], 'Draw the envelope of these folders.')
 _ROOMS = flags.DEFINE_boolean('rooms', False, 'Draw the rooms of this project.')
+_EYES = flags.DEFINE_boolean(
+  'eyes', False, 'Draw what each camera sees; takes the extra video.'
+)
 
 
 def main(argv: Sequence[str]) -> int:
@@ -44,9 +48,14 @@ def main(argv: Sequence[str]) -> int:
     print(files.replace(folder / 'rooms.svg', f'{whole}\n'))
     return 0
   # Imported here: to draw maps, no simulator is needed.
-  from waggle_tasks.experiments.video import shots
+  from waggle_tasks.experiments.video import eye_shots, shots
 
-  for name, picture in shots.take(_RECEIVER.value).items():
+  pictures = (
+    {'eyes.png': eye_shots.take()}
+    if _EYES.value
+    else shots.take(_RECEIVER.value)
+  )
+  for name, picture in pictures.items():
     _, data = cv2.imencode('.png', picture[..., ::-1])
     print(files.replace(folder / name, data.tobytes()))
   return 0

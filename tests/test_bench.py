@@ -17,6 +17,7 @@ from waggle_tasks.agents import receivers
 from waggle_tasks.experiments.bench_parts import (
   cameras,
   events,
+  eye_costs,
   fidelities,
   learners,
   loops,
@@ -48,6 +49,9 @@ MEASURED = {
       cameras.STOCK: 36, cameras.STOCK_PLAIN: 36, cameras.FULL: 36,
       cameras.INCREMENTAL: 7560,
     },
+  ),
+  'eyes': eye_costs.Looking(
+    {'ideal': [0.002], 'fpv': [0.010]}, {'ideal': [0.002], 'fpv': [0.0025]}
   ),
   'stages': [{'physics': 1e-4, 'rendering': 3e-4, stages.OTHER: 1e-4}],
   'receivers': [
@@ -90,6 +94,7 @@ def test_ratios_are_medians_of_what_was_measured_side_by_side() -> None:
       'stock camera / incremental camera': 100.0,
       'stock, no shadows or multisampling / incremental camera': 10.0,
       'our full render / incremental camera': 20.0,
+      'picture of fpv / of an ideal camera of its size': 4.0,
       'klt receiver / view_bank': 2.0,
       'simulated time / time on one core': 10.0,
       **{
@@ -118,6 +123,7 @@ def test_a_report_tells_the_ratios_before_anything_else() -> None:
   assert {
     'stock 60.000 36',
     'all rest 0.100 40%',
+    'fpv 640x480 10.00 2.50',
     'rendering 300 60%',
     'view_bank 150 200',
     'everything 10.00 10.0',

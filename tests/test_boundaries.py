@@ -14,7 +14,8 @@ ROOT = pathlib.Path(__file__).parents[1]
 SIMULATOR = frozenset({'dm_control', 'dm_env', 'mujoco'})
 # Modules beside the rooms that hold plain values and may be used by all.
 OPEN = (
-  '_version', 'appearance', 'doors', 'errors', 'msh', 'runtime', 'sensor',
+  '_version', 'appearance', 'doors', 'errors', 'eyes', 'msh', 'runtime',
+  'sensor',
 )  # fmt: skip
 
 
@@ -37,7 +38,7 @@ ROOMS = {
   'entities': Room(
     'entities',
     frozenset({'protocol'}),
-    SIMULATOR | {'numpy', 'cv2', 'OpenGL'},
+    SIMULATOR | {'numpy', 'cv2', 'OpenGL', 'av'},
   ),
   'arenas': Room('arenas', frozenset({'protocol'}), SIMULATOR | {'numpy'}),
   'agents': Room(
@@ -273,8 +274,8 @@ SIMULATING_MODULES = frozenset({
   'studies.runner',
   'studies.spoilers', 'studies.suite_case', 'studies.suite_study',
   'studies.sweep_flight', 'studies.sweep_study',
-  'video.board_films', 'video.board_pictures', 'video.film', 'video.lens',
-  'video.shots',
+  'video.board_films', 'video.board_pictures', 'video.eye_shots', 'video.film',
+  'video.lens', 'video.shots',
 })  # fmt: skip
 IMPORT_ALL = """
 import importlib, sys

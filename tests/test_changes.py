@@ -6,7 +6,12 @@ import pytest
 
 from waggle_tasks import scenario
 from waggle_tasks.arenas import layouts
-from waggle_tasks.experiments.record import changes, scenario_fields, writer
+from waggle_tasks.experiments.record import (
+  changes,
+  eye_fields,
+  scenario_fields,
+  writer,
+)
 from waggle_tasks.experiments.video import film, panel
 from waggle_tasks.protocol import gestures
 from waggle_tasks.protocol.symbols import Symbol
@@ -29,6 +34,8 @@ OTHERS = {
   'language': 'swift', 'bits': '01', 'repeat': 2,
   'dynamics': 'rotors', 'estimator': 'mocap', 'gusts': True, 'downwash': True,
   'safety': 'avoid', 'meaning': 'place',
+  'eye': 'webcam', 'lens': 'fisheye', 'grey': True, 'mosaic': True,
+  'well_electrons': 100.0, 'codec': 'jpeg', 'jpeg_quality': 50, 'h264_crf': 30,
 }  # fmt: skip
 
 
@@ -41,7 +48,8 @@ def value(name: str) -> object:
 
 
 def made(**values: object) -> scenario.Scenario:
-  return scenario_fields.make(scenario_fields.defaults() | values)
+  usual = scenario_fields.defaults()
+  return scenario_fields.make(eye_fields.filled(usual | values, usual))
 
 
 def test_the_default_scenario_changes_nothing() -> None:
@@ -62,6 +70,10 @@ def test_every_field_that_is_changed_is_said(name: str) -> None:
     extra = {'dynamics': 'rotors'}
   if name in ('bits', 'repeat'):
     extra = {'language': 'swift'}
+  if name in ('k1', 'k2', 'k3', 'p1', 'p2'):
+    extra = {'lens': 'brown'}
+  if name == 'k4':
+    extra = {'lens': 'fisheye'}
   if name == 'gusts':
     extra['wind_mps'] = 1.0
   said = changes.of(made(**{**extra, name: other}))

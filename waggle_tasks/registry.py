@@ -6,7 +6,7 @@ import mujoco
 from waggle_tasks import fidelity, runtime, scenarios
 from waggle_tasks import scenario as scenario_lib
 from waggle_tasks.arenas import flight_room, layouts
-from waggle_tasks.entities import observer, performer
+from waggle_tasks.entities import lenses, observer, performer
 from waggle_tasks.tasks import broadcast, copies, furnish
 from waggle_tasks.tasks import parts as parts_lib
 
@@ -36,13 +36,18 @@ def parts(scenario: Scenario) -> parts_lib.Parts:
       sensor,
       agreement,
       scenario.dynamics,
+      scenario.eye,
     )
     for name, sensor in zip(
       layouts.names(scenario.observers), scenario.sensors, strict=True
     )
   )
   made = parts_lib.Parts(
-    room=flight_room.FlightRoom(scenario.appearance, agreement=agreement),
+    room=flight_room.FlightRoom(
+      scenario.appearance,
+      agreement=agreement,
+      drawn_px=lenses.drawn(agreement.camera, scenario.eye).size,
+    ),
     performer=performer.Performer(dynamics=scenario.dynamics),
     observers=observers,
     poses=scenario.poses(),

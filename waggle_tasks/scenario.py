@@ -3,7 +3,8 @@
 import dataclasses
 
 from waggle_tasks import appearance as appearance_lib
-from waggle_tasks import errors, placement, scenario_rules, spoken
+from waggle_tasks import errors, eye_presets, placement, scenario_rules, spoken
+from waggle_tasks import eyes as eyes_lib
 from waggle_tasks import fidelity as fidelity_lib
 from waggle_tasks import sensor as sensor_lib
 from waggle_tasks.arenas import layouts
@@ -91,6 +92,8 @@ class Scenario:
     safety: What is done about flights that would meet, one of
       `safety_lib.SAFETIES`: they are refused, as in the paper, or vehicles
       avoid each other.
+    eye: What the observers' cameras are; in Python a name stands for all that
+      it sets, see `eye_presets.fields`.
     sensor: What spoils the observers' images.
     rate_hz: How many images and references there are in a second: 250 over a
       whole number, 10 to 125.
@@ -136,6 +139,7 @@ class Scenario:
   estimator: str = 'none'
   drift: drift_lib.Drift = drift_lib.Drift()
   safety: str = 'refuse'
+  eye: eyes_lib.Eye = eyes_lib.Eye()
   sensor: sensor_lib.Sensor = sensor_lib.Sensor()
   rate_hz: float = agreement_lib.Agreement.rate_hz
   hover_height_m: float = agreement_lib.Agreement.hover_height_m
@@ -147,6 +151,8 @@ class Scenario:
   fidelity: str = fidelity_lib.PIXELS
 
   def __post_init__(self) -> None:
+    if isinstance(self.eye, str):
+      eye_presets.settle(self, self.eye)
     scenario_rules.check(self)
 
   @property
@@ -157,7 +163,7 @@ class Scenario:
   @property
   def agreement(self) -> agreement_lib.Agreement:
     """What both sides know."""
-    seen_with = camera_lib.Camera.of(
+    seen_with = self.eye.camera(
       self.camera_width_px, self.camera_height_px, self.camera_fovy_deg
     )
     language = spoken.find(self.language)

@@ -165,7 +165,11 @@ def from_rows(rows: Sequence[Mapping[str, Any]]) -> tuple[Case, ...]:
     label = changes.pop('label', '')
     text = ', '.join(f'{key} = {value}' for key, value in changes.items())
     try:
+      eye = changes.get('eye')
+      if isinstance(eye, str):  # A name, for all that it sets.
+        del changes['eye']
       values = plain.fields(scenario_lib.Scenario, changes)
+      values |= {'eye': eye} if isinstance(eye, str) else {}
       scene = scenarios.find(task, **values)
       cases.append(Case(name, group, label or text or task, scene))
     except errors.WaggleError as error:

@@ -8,6 +8,7 @@ from waggle_tasks import errors, registry, scenario
 from waggle_tasks.agents import receivers
 from waggle_tasks.experiments.bench_parts import (
   cameras,
+  eye_costs,
   fidelities,
   learners,
   loops,
@@ -140,6 +141,7 @@ def _alone(
 # What each part measures.
 SECTIONS: dict[str, Callable[[Settings], Any]] = {
   'cameras': lambda settings: _alone(cameras.measure, settings),
+  'eyes': lambda settings: _alone(eye_costs.measure, settings),
   'stages': lambda settings: _alone(stages.measure, settings),
   'receivers': lambda settings: _alone(
     readers.measure, settings, settings.receivers

@@ -10,6 +10,7 @@ from typing import Any
 
 from waggle_tasks.experiments.bench_parts import (
   cameras,
+  eye_costs,
   fidelities,
   learners,
   loops,
@@ -256,14 +257,14 @@ def _worker_ratios(found: Mapping[int, Sequence[float]]) -> Ratios:
 
 
 def _workers(found: Mapping[int, Sequence[float]]) -> str:
-  header = ('processes', 'simulated s a second')
   rows = [(str(count), _middle(each, 1)) for count, each in found.items()]
-  return table.render(header, rows)
+  return table.render(('processes', 'simulated s a second'), rows)
 
 
 # How each part is told, and the ratios that follow from it.
 _PARTS: dict[str, tuple[Callable[..., str], Callable[..., Ratios]]] = {
   'cameras': (_cameras, _camera_ratios),
+  'eyes': (eye_costs.text, eye_costs.ratios),
   'stages': (_stages, lambda found: {}),
   'receivers': (_receivers, _receiver_ratios),
   'realtime': (_realtime, _realtime_ratios),

@@ -7,7 +7,12 @@ together take less than 30 minutes on two cores.
 
 from typing import Any
 
-from waggle_tasks.experiments.claim_parts import colony_book, kinds, time_book
+from waggle_tasks.experiments.claim_parts import (
+  colony_book,
+  eye_claims,
+  kinds,
+  time_book,
+)
 
 _DECOYS: dict[str, Any] = {
   'control': 'circles,diagonals,random_walk,navigation,swapped,repeated,'
@@ -255,6 +260,7 @@ CLAIMS = {
     'event-logs', kinds.ROWS, ('bench', '--check_events', '--suite=controls')
   ),
   **colony_book.CLAIMS,
+  **eye_claims.CLAIMS,
   **time_book.CLAIMS,
 }  # fmt: skip
 

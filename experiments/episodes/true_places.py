@@ -41,6 +41,9 @@ def _project(
   x_m, y_m, z_m = (place_m - data.cam_xpos[eye]) @ to_eye
   if z_m >= 0:  # A camera looks along its -z axis.
     return np.full(2, np.nan)
+  if lens.lens.bends:
+    place = lens.lens.shown(np.array([-x_m / z_m, y_m / z_m]))
+    return place * lens.focal_px + np.array(lens.size) / 2
   return np.array(
     [
       lens.columns / 2 - lens.focal_px * x_m / z_m,

@@ -22,7 +22,8 @@ ROOMS = (
 # Modules beside the rooms.
 _BESIDE = {
   '_version': COMMON, 'doors': COMMON, 'errors': COMMON, 'msh': COMMON,
-  'runtime': COMMON, 'appearance': SETTINGS, 'sensor': SETTINGS,
+  'runtime': COMMON, 'appearance': SETTINGS, 'eyes': SETTINGS,
+  'sensor': SETTINGS,
   '__main__': COMMANDS,
 }  # fmt: skip
 _CELL, _LEFT, _ABOVE = 34, 108, 96  # Units of the SVG.

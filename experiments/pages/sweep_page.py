@@ -5,7 +5,11 @@ import itertools
 import pathlib
 
 from waggle_tasks.experiments.pages import document, heat_map, markup
-from waggle_tasks.experiments.record import provenance, scenario_fields
+from waggle_tasks.experiments.record import (
+  eye_fields,
+  provenance,
+  scenario_fields,
+)
 from waggle_tasks.experiments.results import (
   envelope,
   heat,
@@ -131,7 +135,9 @@ def failures(found: Sequence[envelope.Failure]) -> markup.Markup | None:
 def repeat(row: envelope.Row) -> str:
   """The shell line that flies a case again, with its report."""
   given = [f'--receiver={row.receiver}']
-  given += scenario_fields.flags(row.scenario)
+  usual = scenario_fields.defaults()
+  whole = eye_fields.filled(row.scenario, usual, row.cell)
+  given += scenario_fields.flags(whole)
   return provenance.command_line('broadcast', given)
 
 

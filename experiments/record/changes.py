@@ -3,8 +3,8 @@
 from collections.abc import Container, Mapping
 from typing import Any
 
-from waggle_tasks import plain, scenario
-from waggle_tasks.experiments.record import scenario_fields
+from waggle_tasks import eyes, plain, scenario
+from waggle_tasks.experiments.record import eye_fields, scenario_fields
 
 
 def of(scene: scenario.Scenario, told: Container[str] = ()) -> list[str]:
@@ -19,10 +19,12 @@ def of(scene: scenario.Scenario, told: Container[str] = ()) -> list[str]:
 
 def among(fields: Mapping[str, Any], told: Container[str] = ()) -> list[str]:
   """The same, of the fields of a scenario as config.json has them."""
-  usual = scenario_fields.defaults()
+  values = scenario_fields.flat(fields)
+  usual = scenario_fields.defaults() | eye_fields.of(values)
+  usual['eye'] = eyes.IDEAL
   return [
     f'{name}={_text(value)}'
-    for name, value in scenario_fields.flat(fields).items()
+    for name, value in values.items()
     if name not in told and value != usual.get(name)
   ]
 

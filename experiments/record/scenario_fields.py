@@ -15,8 +15,13 @@ import math
 import pathlib
 from typing import Any
 
-from waggle_tasks import kinds, plain, scenario
-from waggle_tasks.experiments.record import docs, hover_file, language_file
+from waggle_tasks import eyes, kinds, plain, scenario
+from waggle_tasks.experiments.record import (
+  docs,
+  eye_fields,
+  hover_file,
+  language_file,
+)
 from waggle_tasks.protocol import checks, gestures, languages
 from waggle_tasks.protocol.symbols import Symbol
 from waggle_tasks.tasks import hover
@@ -152,6 +157,7 @@ def changed(scene: scenario.Scenario, values: Values) -> scenario.Scenario:
     WaggleError: if a name is not known, a value breaks a rule of the scenario,
       or is a number of gestures where these are no Vs.
   """
+  scene = eye_fields.put(scene, values)
   parts: dict[str, dict[str, Any]] = {}
   for name, value in values.items():
     checks.choice('field', name, [*table()], scenario.ScenarioError)
@@ -251,11 +257,11 @@ def parse(name: str, text: str) -> object:
 
 def flags(values: Values) -> list[str]:
   """The flags that make a scenario: those that differ from their default."""
-  usual = defaults()
+  known = defaults() | {**eye_fields.of(values), 'eye': eyes.IDEAL}
   return [
     f'--{name}={_text(value)}'
     for name, value in values.items()
-    if value != usual[name]
+    if value != known[name]
   ]
 
 

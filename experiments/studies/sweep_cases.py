@@ -9,7 +9,7 @@ from typing import Any
 
 from waggle_tasks import errors
 from waggle_tasks import scenario as scenario_lib
-from waggle_tasks.experiments.record import scenario_fields
+from waggle_tasks.experiments.record import eye_fields, scenario_fields
 from waggle_tasks.protocol import checks, packets
 
 RANDOM, ALL = 'random', 'all'
@@ -168,7 +168,8 @@ def draw(
     values['payload'] = f'{number:0{bits}b}'
   if values['bits'].startswith(RANDOM):
     values['bits'] = _drawn_bits(values['bits'], drawn)
-  return Sample(cell, repeat, values, scenario_fields.make(values))
+  whole = eye_fields.filled(values, scenario_fields.defaults(), cell)
+  return Sample(cell, repeat, values, scenario_fields.make(whole))
 
 
 def _drawn_bits(text: str, drawn: bytes) -> str:

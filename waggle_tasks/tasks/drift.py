@@ -15,7 +15,7 @@ import numpy as np
 from waggle_tasks import errors
 from waggle_tasks.protocol import agreement, checks, minimum_jerk
 from waggle_tasks.tasks import hover as hover_lib
-from waggle_tasks.tasks import hover_presets
+from waggle_tasks.tasks import hover_presets, slide
 
 HOVERS = ('none', *hover_presets.PRESETS, 'log')
 
@@ -45,6 +45,10 @@ class Drift:
     drift_time_s: Time in which a drift becomes another, 0.3 to 10 s; the
       attitude loop of a small vehicle corrects faster, and its position loop
       not much slower, than 1 s.
+    observer_slide_mps: Largest speed of each observer's slow way to and fro in
+      20 s, along a line that is drawn, 0 to 0.02 m/s.
+    observer_turn_dps: Largest rate of its heading on such a way, 0 to 1 degrees
+      a second.
     performer_hover: How the performer hovers beside that, as it was measured:
       one of `HOVERS`.
     observer_hover: How each observer hovers beside that: one of `HOVERS`.
@@ -57,6 +61,8 @@ class Drift:
   observer_drift_m: float = 0.0
   observer_yaw_drift_deg: float = 0.0
   drift_time_s: float = 1.0
+  observer_slide_mps: float = 0.0
+  observer_turn_dps: float = 0.0
   performer_hover: str = 'none'
   observer_hover: str = 'none'
   hover_amplitude: float = 1.0
@@ -68,6 +74,8 @@ class Drift:
       'observer_drift_m': (0.0, 0.03),
       'observer_yaw_drift_deg': (0.0, 5.0),
       'drift_time_s': (0.3, 10.0),
+      'observer_slide_mps': (0.0, 0.02),
+      'observer_turn_dps': (0.0, 1.0),
       'hover_amplitude': (0.0, 2.0),
     }
     checks.settle_numbers(self, limits, DriftError)
@@ -90,11 +98,12 @@ class Drift:
   def near_m(self) -> float:
     """How much nearer it brings two vehicles, all but surely.
 
-    Four times the root mean square for each of them.
+    Four times the root mean square for each of them, and all of a slow way.
     """
     performer_m = math.hypot(self.performer_drift_m, self._rms_m('performer'))
     observer_m = math.hypot(self.observer_drift_m, self._rms_m('observer'))
-    return 4 * (observer_m + max(performer_m, observer_m))
+    slide_m = 2 * slide.reach(self.observer_slide_mps)
+    return 4 * (observer_m + max(performer_m, observer_m)) + 2 * slide_m
 
   def performer(
     self,
@@ -119,7 +128,11 @@ class Drift:
   ) -> 'Sway':
     """An observer's drift in one episode; see `performer`."""
     turn_rad = math.radians(self.observer_yaw_drift_deg)
-    return self._sway('observer', turn_rad, random_state, yaw_rad, rate_hz)
+    sway = self._sway('observer', turn_rad, random_state, yaw_rad, rate_hz)
+    rates = self.observer_slide_mps, math.radians(self.observer_turn_dps)
+    if not any(rates):
+      return sway
+    return dataclasses.replace(sway, way=slide.Slide(*rates, random_state))
 
   def _sway(
     self,
@@ -162,10 +175,12 @@ class Sway:
   Attributes:
     wander: The drift.
     hover: The hover that comes on top.
+    way: The slow way that comes on top, if there is one.
   """
 
   wander: 'Wander'
   hover: hover_lib.Hover | None = None
+  way: slide.Slide | None = None
 
   def at(self, time_s: float) -> tuple[np.ndarray, ...]:
     """Both, their velocity and their acceleration, (4,) each, at a time.
@@ -173,6 +188,8 @@ class Sway:
     The heading is the drift's; that of a hover is part of its `attitude`.
     """
     drift = self.wander.at(time_s)
+    if self.way is not None:
+      drift = tuple(np.array(drift) + self.way.at(time_s))
     if self.hover is None:
       return drift
     both = np.array(drift)
