@@ -7,6 +7,7 @@ from typing import Any, Protocol
 from waggle_tasks.agents import config as config_lib
 from waggle_tasks.agents import (
   description,
+  events_receiver,
   group,
   joint_receiver,
   outsiders,
@@ -40,6 +41,7 @@ RECEIVERS: dict[str, Any] = {  # A `Maker` each.
   'absolute': receiver.AbsoluteReceiver,
   'view_bank': receiver.ViewBankReceiver,
   'joint': joint_receiver.JointReceiver,
+  'events': events_receiver.EventsReceiver,
 }
 _PARTS = ('step', 'track', 'segment')  # Of what was made.
 
