@@ -110,7 +110,9 @@ class EventCamera:
     self._known[rows, columns] += whole
     counts, signs = np.abs(whole).astype(int), np.sign(whole).astype(np.int8)
     pixel = np.repeat(np.arange(len(whole)), counts)
-    number = np.arange(len(pixel)) - np.repeat(np.cumsum(counts) - counts, counts)
+    number = np.arange(len(pixel)) - np.repeat(
+      np.cumsum(counts) - counts, counts
+    )
     crossed = known[pixel] + signs[pixel] * (number + 1)
     times_s = self._times_s(crossed, last[pixel], now[pixel], before_s, time_s)
     order = np.argsort(times_s, kind='stable')

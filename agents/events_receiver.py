@@ -1,15 +1,15 @@
 """Reads dances by an event camera: nothing but changes of brightness.
 
 Images end in its front end, see `event_camera`. Behind it there are events
-alone, and a dancer that hovers is not to be seen at all: events show it, for the
-first time, when it leaves its place (which is how event cameras are read for
-such messages, Zhang et al. 2025, 'MoCom', arXiv:2510.14770). Summed by pixel,
-they are how brightness differs from that before the dance (direct integration:
-Scheerlinck et al. 2018, 'Continuous-time Intensity Estimation Using Event
-Cameras', ACCV, without its filter, as these events have no noise of their own).
-So the target is tracked in pictures of sums, by its difference from nothing;
-motions are cut, recognised and parsed as by `view_bank` in the paper's language,
-and as by `joint` in all others.
+alone, and a dancer that hovers is not to be seen: events show it for the first
+time when it leaves its place. That events tell motion from rest is the idea of
+MoCom (Zhang et al. 2025, arXiv:2510.14770), which reads such gestures with an
+event camera. Summed by pixel, events are how brightness differs from what it
+was before the dance (Scheerlinck et al. 2018, 'Continuous-time Intensity
+Estimation Using Event Cameras', ACCV; without its filter, as these events have
+no noise of their own). So the target is tracked in pictures of sums, by its
+difference from nothing; motions are cut, recognised and parsed as by `view_bank`
+in the paper's language, and as by `joint` in all others.
 """
 
 import dataclasses

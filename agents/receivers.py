@@ -10,6 +10,7 @@ from waggle_tasks.agents import (
   events_receiver,
   group,
   joint_receiver,
+  learned_receiver,
   outsiders,
   receiver,
   settings,
@@ -42,6 +43,7 @@ RECEIVERS: dict[str, Any] = {  # A `Maker` each.
   'view_bank': receiver.ViewBankReceiver,
   'joint': joint_receiver.JointReceiver,
   'events': events_receiver.EventsReceiver,
+  'learned': learned_receiver.LearnedReceiver,
 }
 _PARTS = ('step', 'track', 'segment')  # Of what was made.
 
