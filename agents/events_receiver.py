@@ -8,8 +8,8 @@ event camera. Summed by pixel, events are how brightness differs from what it
 was before the dance (Scheerlinck et al. 2018, 'Continuous-time Intensity
 Estimation Using Event Cameras', ACCV; without its filter, as these events have
 no noise of their own). So the target is tracked in pictures of sums, by its
-difference from nothing; motions are cut, recognised and parsed as by `view_bank`
-in the paper's language, and as by `joint` in all others.
+difference from nothing; motions are cut, recognised and parsed as `view_bank`
+does in the paper's language, and as `joint` does in all others.
 """
 
 import dataclasses
