@@ -34,11 +34,11 @@ class Trained:
 TRAINED = {
   'paper': Trained(
     agreement_lib.Agreement().spoken,
-    '46d7f94b9b0e35eeff5611724652891f3c882758b3e6854bfc88a7df7dc2a783',
+    'b81a431cf43b52577769abcb7e1a515942a1422b4340ca74de343923831a0b20',
   ),
   'swift': Trained(
     languages.LANGUAGES['swift'],
-    '4a5ecdc4cb2796c81c18e8ebfedc65246612811b6e0027dd1aa37de3797b24ae',
+    '84367f2adf21b914c5aefe824a3c0bc85d776f610796abc4ef25a39eeab8017e',
   ),
 }
 

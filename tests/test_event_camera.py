@@ -15,9 +15,7 @@ def flat(level: int) -> np.ndarray:
   return np.full(SHAPE, level, np.uint8)
 
 
-def seen(
-  levels: Sequence[int], **numbers: float
-) -> list[event_camera.Events]:
+def seen(levels: Sequence[int], **numbers: float) -> list[event_camera.Events]:
   """What one pixel after another sends, of images of one brightness each."""
   camera = event_camera.EventCamera(event_camera.Pixels(**numbers))
   return [camera.step(flat(k), 0.04 * n) for n, k in enumerate(levels)]

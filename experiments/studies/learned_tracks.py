@@ -174,10 +174,10 @@ class Tracks:
   def _begun(
     self, rng: np.random.Generator, state: int, at_s: np.ndarray
   ) -> np.ndarray:
-    """A START, or a part of one."""
+    """A START, or a part of one that is more than its last rest."""
     del state
     start_s = self._alphabet.start.duration_s
-    early_s = rng.uniform(-0.3, 0.8) * start_s
+    early_s = rng.uniform(-0.3, 0.45) * start_s
     return _at(self._start[None], (at_s[None] + early_s) / start_s)[0]
 
   def _turned(

@@ -59,7 +59,7 @@ def train(
       first = mean / (1 - _MOMENTA[0] ** step)
       second = square / (1 - _MOMENTA[1] ** step)
       each -= rate * first / (np.sqrt(second) + _TINY)
-    if step % 500 == 0:
+    if step % 250 == 0:
       report(step, loss)
   return _guarded(layers, tracks, rng)
 
