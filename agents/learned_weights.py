@@ -38,7 +38,7 @@ TRAINED = {
   ),
   'swift': Trained(
     languages.LANGUAGES['swift'],
-    '84367f2adf21b914c5aefe824a3c0bc85d776f610796abc4ef25a39eeab8017e',
+    '48d05dad033bd0680fb0bf45c7d058a206a55eafc1224f324f6ae0c28c076d71',
   ),
 }
 

@@ -216,10 +216,12 @@ class Tracks:
     if isinstance(self._alphabet, levels.Levels):
       high_m = self._alphabet.height_m(self._any(rng))
       side_m = rng.uniform(0.42, 0.58) * rng.choice((-1, 1))
-      way = self._one(state, 0, at_s)
-      share = (way[:, 1] - way[0, 1]) / ((way[-1, 1] - way[0, 1]) or 1.0)
+      other = (state + 1) % self._alphabet.states
+      way = self._one(state, int(other), at_s)
+      begin_m, end_m = (self._alphabet.height_m(int(k)) for k in (state, other))
+      share = (way[:, 1] - begin_m) / (end_m - begin_m)
       goal_m = high_m + side_m * self._alphabet.spacing_m
-      way[:, 1] = way[0, 1] + share * (goal_m - way[0, 1])
+      way[:, 1] = begin_m + share * (goal_m - begin_m)
       return way
     one, other = rng.permutation(self._alphabet.size + 1)[:2]
     way, later = (
