@@ -35,7 +35,7 @@ from waggle_tasks.protocol import agreement as agreement_lib
 # many are told apart.
 _NOTHING, _LEVELS, _MOST = 128, 12, 10
 # A picture of nothing is a scene for whoever sees events.
-_SEEN = dataclasses.replace(config.VIEW_BANK.tracking, min_contrast=0.0)
+_SEEN = config.Differencing(min_contrast=0.0)
 _WHOLE = joint_config.Config()
 
 
@@ -101,7 +101,7 @@ class EventsReceiver:
     self._camera = event_camera.EventCamera(config.pixels)
     self._images = inputs.Images()
     self._sums: Sums | None = None
-    self._reader: receiver.Receiver = (
+    self._reader: receiver.ViewBankReceiver | joint_receiver.JointReceiver = (
       receiver.ViewBankReceiver(agreement, config.gestures)
       if agreement.language is None
       else joint_receiver.JointReceiver(agreement, config.frames)

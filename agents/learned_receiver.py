@@ -128,7 +128,8 @@ class LearnedReceiver(joint_receiver.JointReceiver):
     """The bits of a frame that began there, or why there are none."""
     samples = self._history.samples(start.begin_s)
     pose = slots.Pose(start.home_px, 0.0, start.scale_px)
-    states, state = self._alphabet.states, 0
+    states = self._alphabet.states
+    state: int | None = 0
     symbols: list[int | None] = []
     likely: list[int | None] = []  # What was seen, sure or not.
     sure = 1.0

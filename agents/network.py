@@ -137,11 +137,11 @@ class Network:
     """What `arrays` gave, in double precision."""
     found = {name: np.asarray(each, float) for name, each in arrays.items()}
     layers = tuple(
-      found.pop(f'layer_{k}')
+      found[f'layer_{k}']
       for k in range(sum(name.startswith('layer_') for name in arrays))
     )
-    scalars = {
-      name: float(found.pop(name))
-      for name in ('unit_m', 'most_left', 'most_distance')
-    }
-    return cls(layers, **found, **scalars)
+    return cls(
+      layers, float(found['unit_m']), found['units'], found['mean'],
+      found['basis'], float(found['most_left']), found['centres'],
+      found['precision'], float(found['most_distance']),
+    )  # fmt: skip
