@@ -232,6 +232,7 @@ def test_what_was_not_seen_has_no_place_in_a_window() -> None:
   )
 
 
+@pytest.mark.slow
 def test_training_learns_and_weights_are_kept_as_they_are() -> None:
   spoken = agreed('swift').spoken
   tracks = learned_tracks.Tracks(spoken.alphabet, spoken.confirm_s)
