@@ -7,7 +7,7 @@ together take less than 30 minutes on two cores.
 
 from typing import Any
 
-from waggle_tasks.experiments.claim_parts import kinds
+from waggle_tasks.experiments.claim_parts import eye_claims, kinds
 
 _DECOYS: dict[str, Any] = {
   'control': 'circles,diagonals,random_walk,navigation,swapped,repeated,'
@@ -55,6 +55,7 @@ def _disturbed(*flags: str, **grid: str) -> kinds.Claim:
 _SWAY = '--observer_drift_m=0.002', '--observer_yaw_drift_deg=0.1'
 
 CLAIMS = {
+  **eye_claims.CLAIMS,
   'main-job': kinds.Claim('main-job', kinds.TEXT, ('broadcast',)),
   'main-totals': kinds.Claim('main-totals', kinds.COPY, detail='paper'),
   'map-far-aside': _sweep(
@@ -109,35 +110,6 @@ CLAIMS = {
     'link-hidden', 1, '--replays=10', '--language=swift', receiver='joint',
     observers=1, how=kinds.PART, control='seven_bits,begun_anew,run_together',
     distance_m='1.3',
-  ),
-  'eyes-joint': _sweep(
-    'eyes-joint', 1, '--language=swift', '--bearing_deg=30', receiver='joint',
-    observers=1, distance_m='2.5', noise_sigma='0',
-  ),
-  'eyes-learned': _sweep(
-    'eyes-learned', 1, '--language=swift', '--bearing_deg=30',
-    receiver='learned', observers=1, distance_m='2.5', noise_sigma='0',
-  ),
-  'eyes-events': _sweep(
-    'eyes-events', 1, '--language=swift', '--bearing_deg=30',
-    receiver='events', observers=1, distance_m='2.5', noise_sigma='0',
-  ),
-  'eyes-hidden-learned': _sweep(
-    'eyes-hidden-learned', 1, '--replays=6', '--language=swift',
-    receiver='learned', observers=1, how=kinds.PART, control='seven_bits',
-  ),
-  'eyes-hidden-events': _sweep(
-    'eyes-hidden-events', 1, '--replays=3', '--language=swift',
-    receiver='events', observers=1, how=kinds.PART, control='seven_bits',
-  ),
-  'trained': kinds.Claim(
-    'trained', kinds.UNCHECKED, detail='training takes half a minute of a core'
-  ),
-  'eyes-paper': kinds.Claim(
-    'eyes-paper', kinds.UNCHECKED, detail='of one dance, of which all is read'
-  ),
-  'eyes-cost': kinds.Claim(
-    'eyes-cost', kinds.UNCHECKED, detail='times, which differ between runs'
   ),
   'gentle': _sweep(
     'gentle', 1, '--language=gentle', '--dynamics=rotors', receiver='joint',
