@@ -88,7 +88,7 @@ setuptools.setup(
     'waggle_tasks': 'waggle_tasks',
     **{f'waggle_tasks.{folder}': folder for folder in FOLDERS},
   },
-  package_data={'': ['*.xml', '*.json', '*.css', '*.js', 'py.typed']},
+  package_data={'': ['*.xml', '*.json', '*.css', '*.js', '*.npz', 'py.typed']},
   install_requires=[
     'absl-py>=2',
     'dm-control==1.0.50',

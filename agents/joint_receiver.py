@@ -39,14 +39,14 @@ _ROUNDS = 3  # Of deciding a word and looking again.
 
 
 @dataclasses.dataclass(frozen=True)
-class _Read:
+class Read:
   """What came of a frame: its bits, or a reason."""
 
   reason: str
   word: tuple[int, ...] = ()
   clear: float = 0.0
   bits: str | None = None
-  angle_deg: float = 0.0
+  angle_deg: float | None = None
   distance_m: float = 0.0
 
 
@@ -219,7 +219,12 @@ class JointReceiver:
     for each in [*self._open]:
       if time_s < each.due_s:
         continue
-      read = self._attempt(each.start)
+      rest_s = self._limits.start_rest_s
+      reason = reading.unrested(
+        each.start, self._history.samples(each.start.begin_s - rest_s),
+        self._usual, self._limits,
+      )  # fmt: skip
+      read = Read(reason) if reason else self._attempt(each.start)
       if read.bits is not None:  # None that began meanwhile is one.
         self._open = [o for o in self._open if o.start.begin_s > time_s]
         return [*events, *self._accept(read, read.bits, time_s)]
@@ -231,7 +236,7 @@ class JointReceiver:
         self._open.append(last)
     return events
 
-  def _attempt(self, start: lock.Lock) -> _Read:
+  def _attempt(self, start: lock.Lock) -> Read:
     """The bits of a frame that began there, or why there are none."""
     limits = self._limits
     distance_m = self._focal_px / start.scale_px
@@ -246,7 +251,7 @@ class JointReceiver:
     )  # fmt: skip
     found = reader.judged()
     if found.end_seen < limits.min_seen:
-      return _Read(f'END was seen for {found.end_seen:.0%} of its time')
+      return Read(f'END was seen for {found.end_seen:.0%} of its time')
     for _ in range(_ROUNDS):
       word, clear = soft.decide(reader, self._blocks, self._alphabet.size)
       if (word == reader.word).all():
@@ -255,16 +260,16 @@ class JointReceiver:
     found = reader.judged()
     symbols = tuple(map(int, word))
     if reason := reading.doubt(found, clear, limits):
-      return _Read(reason, symbols, clear)
+      return Read(reason, symbols, clear)
     reason, bits = self._agreement.coding.judge(
       symbols, self._agreement.frame_bits, self._alphabet.size
     )
     angle_deg = math.degrees(found.angle_rad)
     distance_m = self._focal_px / found.scale_px
-    return _Read(reason, symbols, clear, bits, angle_deg, distance_m)
+    return Read(reason, symbols, clear, bits, angle_deg, distance_m)
 
   def _accept(
-    self, read: _Read, bits: str, time_s: float
+    self, read: Read, bits: str, time_s: float
   ) -> list[receiver.Event]:
     """END, and the message when it is whole."""
     end = receiver.Event(
@@ -286,7 +291,7 @@ class JointReceiver:
     return None if whole is None else payload.Data(whole)
 
 
-def _rejected(read: _Read, time_s: float) -> receiver.Event:
+def _rejected(read: Read, time_s: float) -> receiver.Event:
   return receiver.Event(
     time_s, Symbol.UNKNOWN, frame.State.LEAD_NULL, rejection=read.reason,
     word=read.word or None, clear=read.clear if read.word else None,

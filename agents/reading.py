@@ -5,7 +5,8 @@ import dataclasses
 
 import numpy as np
 
-from waggle_tasks.agents import joint_config, slots
+from waggle_tasks.agents import joint_config, lock, slots
+from waggle_tasks.agents import shapes as shapes_lib
 
 _SAME_M = 1e-6  # END of gestures begins where it ends, but for rounding.
 
@@ -26,8 +27,6 @@ class Reading:
       far the nearest level is; 0 for gestures, which all end there, so that
       END alone tells their end.
     rest_seen: Whether that rest was seen.
-    before: The same as `rest` of the rest before START...
-    before_seen: ...and whether that was seen.
     astray: What share of the track was where no symbol is flown.
     angle_rad: Where it was seen from.
     scale_px: Pixels of a metre at the dancer.
@@ -38,8 +37,6 @@ class Reading:
   end_seen: float
   rest: float
   rest_seen: bool
-  before: float
-  before_seen: bool
   astray: float
   angle_rad: float
   scale_px: float
@@ -66,9 +63,7 @@ def judge(
   whole = frame.samples.between(begin_s, frame.starts_s(count, poses[-1]))
   ended = frame.part(count, poses[-1])
   end_s = float(ended.weights_s.sum())
-  begun = frame.part(slots.START, poses[0])
   resting_s = ended.weights_s * (ended.times_s >= shapes.end_s)
-  waiting_s = begun.weights_s * (begun.times_s < 0)
   path = shapes.ends[view, states[-1]]
   stay = float(((path - path[:1]) ** 2).sum(axis=-1).mean()) * shapes.end_s
   stay += float(((path[-1] - path[0]) ** 2).sum()) * frame.after_s
@@ -80,10 +75,8 @@ def judge(
     float(misfit / max(near, 1e-9)),
     error / max(stay, 1e-9),
     min(end_s / frame.length_s(count), 1.0),
-    _aside(frame, view, ended.places_m, resting_s),
+    _aside(shapes, view, ended.places_m, resting_s),
     bool(resting_s.any()),
-    _aside(frame, view, begun.places_m, waiting_s),
-    bool(waiting_s.any()),
     1 - seen_s / max(float(whole.weights_s.sum()), 1e-9),
     float(shapes.angles_rad[view]),
     poses[-1].scale_px,
@@ -102,17 +95,10 @@ def doubt(found: Reading, clear: float, limits: joint_config.Reading) -> str:
     return (
       f'what came for END was none: error {found.end:.2f} > {limits.max_end}'
     )
-  for when, seen, aside in (
-    ('before START', found.before_seen, found.before),
-    ('after END', found.rest_seen, found.rest),
-  ):
-    if not seen:
-      return f'the rest {when} was not seen'
-    if aside > limits.max_rest:
-      return (
-        f'{when} it rested at {aside:.0%} of the way to the next level'
-        f' > {limits.max_rest:.0%}'
-      )
+  if not found.rest_seen:
+    return 'the rest after END was not seen'
+  if found.rest > limits.max_rest:
+    return _beside('after END', found.rest, limits)
   if found.astray > limits.max_astray:
     return f'{found.astray:.0%} of what was seen is where no symbol is flown'
   if found.misfit > limits.max_misfit:
@@ -125,14 +111,45 @@ def doubt(found: Reading, clear: float, limits: joint_config.Reading) -> str:
   return ''
 
 
+def unrested(
+  start: lock.Lock,
+  samples: lock.Samples,
+  shapes: shapes_lib.Shapes,
+  limits: joint_config.Reading,
+) -> str:
+  """Why a START is none, by the rest before it; empty if it may be one.
+
+  Args:
+    start: What was found.
+    samples: Where the target was seen, the rest among it.
+    shapes: What the alphabet looks like.
+    limits: When what was seen is a frame.
+  """
+  begin_s = start.begin_s
+  rest = samples.between(begin_s - limits.start_rest_s, begin_s)
+  if not rest.weights_s.any():
+    return 'the rest before START was not seen'
+  places_m = (rest.places_px - start.home_px) / start.scale_px
+  aside = _aside(shapes, 0, places_m, rest.weights_s)
+  return (
+    _beside('before START', aside, limits) if aside > limits.max_rest else ''
+  )
+
+
+def _beside(when: str, aside: float, limits: joint_config.Reading) -> str:
+  return (
+    f'{when} it rested at {aside:.0%} of the way to the next level >'
+    f' {limits.max_rest:.0%}'
+  )
+
+
 def _aside(
-  frame: slots.Slots,
+  shapes: shapes_lib.Shapes,
   view: int,
   places_m: np.ndarray,  # (T, 2)
   weights_s: np.ndarray,  # (T,)
 ) -> float:
   """How far from the hover point a rest is, in ways to the nearest level."""
-  shapes = frame.shapes
   ways_m = shapes.ends[view][:, 0] - shapes.ends[view][:, -1]
   level_m = float(np.hypot(*ways_m.T).min())
   middle_m = weights_s @ places_m / max(weights_s.sum(), 1e-9)

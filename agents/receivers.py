@@ -8,8 +8,10 @@ from waggle_tasks import doors
 from waggle_tasks.agents import config as config_lib
 from waggle_tasks.agents import (
   description,
+  events_receiver,
   group,
   joint_receiver,
+  learned_receiver,
   outsiders,
   receiver,
   settings,
@@ -41,6 +43,8 @@ RECEIVERS: dict[str, Any] = {  # A `Maker` each.
   'absolute': receiver.AbsoluteReceiver,
   'view_bank': receiver.ViewBankReceiver,
   'joint': joint_receiver.JointReceiver,
+  'events': events_receiver.EventsReceiver,
+  'learned': learned_receiver.LearnedReceiver,
 }
 _PARTS = ('step', 'track', 'segment')  # Of what was made.
 

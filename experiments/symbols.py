@@ -26,7 +26,8 @@ from waggle_tasks.protocol import payload as payload_lib
 _RECEIVER = flags.DEFINE_multi_string('receiver', None, '')
 flags.FLAGS['receiver'].help = (
   'Who reads; may be given again. Unset, all of'
-  f' {", ".join(receivers.RECEIVERS)}, with nulls that the gaps hold.'
+  f' {", ".join(receivers.RECEIVERS)} but learned, with nulls that the gaps'
+  ' hold.'
 )
 _MESSAGES = flags.DEFINE_integer(
   'messages', 2, 'Messages of drawn timelines at each distance, 1 to 64.'
@@ -53,7 +54,9 @@ def main(argv: Sequence[str]) -> int:
   checks.integer('messages', _MESSAGES.value, 1, 64, payload_lib.PayloadError)
   checks.integer('seed', _SEED.value, 0, 2**31 - 1, payload_lib.PayloadError)
   names = _RECEIVER.value or [
-    fitting.fitted(name, mocom.AGREEMENT) for name in receivers.RECEIVERS
+    fitting.fitted(name, mocom.AGREEMENT)
+    for name in receivers.RECEIVERS
+    if name != 'learned'  # Of other gestures.
   ]
   names = list(dict.fromkeys(names))
   for name in names:

@@ -62,7 +62,7 @@ def expected() -> set[str]:
   names = set()
   for folder, place in places.items():
     for path in (ROOT / folder).rglob('*'):
-      kinds = '.py', '.xml', '.json', '.css', '.js', '.typed'
+      kinds = '.py', '.xml', '.json', '.css', '.js', '.npz', '.typed'
       if path.suffix in kinds:
         names.add(f'{place}/{path.relative_to(ROOT / folder).as_posix()}')
     names |= {

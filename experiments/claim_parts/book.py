@@ -8,10 +8,11 @@ together take less than 30 minutes on two cores.
 from typing import Any
 
 from waggle_tasks.experiments.claim_parts import (
-  colony_book,
+  colony_claims,
   eye_claims,
   kinds,
-  time_book,
+  sensing_claims,
+  time_claims,
 )
 
 _DECOYS: dict[str, Any] = {
@@ -259,9 +260,10 @@ CLAIMS = {
   'event-logs': kinds.Claim(
     'event-logs', kinds.ROWS, ('bench', '--check_events', '--suite=controls')
   ),
-  **colony_book.CLAIMS,
+  **colony_claims.CLAIMS,
   **eye_claims.CLAIMS,
-  **time_book.CLAIMS,
+  **sensing_claims.CLAIMS,
+  **time_claims.CLAIMS,
 }  # fmt: skip
 
 _RIGHT = r'^right: (\d+)/(\d+) exposures'
