@@ -39,6 +39,7 @@ class Listener:
     accord: accord_lib.Accord,
     member: int,
     mute: bool = False,
+    flies: bool = True,
   ) -> None:
     """Listens to all whom it sees.
 
@@ -46,8 +47,10 @@ class Listener:
       accord: The rules.
       member: Its own number.
       mute: Whether it answers nothing.
+      flies: Whether it flies what it was told.
     """
     self._accord, self._member, self._mute = accord, member, mute
+    self._flies = flies and accord.parts is None
     self._senders = {view.member: _Sender() for view in accord.views(member)}
     self._message: tuple[int, str] | None = None  # Whose, and what.
     self.order: str | None = None
@@ -142,12 +145,12 @@ class Listener:
     return part.Say(part.REPLIES, bits, note)
 
   def _obey(self, now_s: float) -> None:
-    """Flies a payload when its sender has nothing more to say."""
-    if self._message is None or self._accord.parts or self.order is not None:
+    """Ends, and flies a payload, when its sender has no more to say."""
+    if self._message is None or self.order is not None:
       return
     member, payload = self._message
     if now_s >= self._senders[member].rests_s + self._accord.over_s:
-      self.order = payload
+      self.order = payload if self._flies else None
       self.done = True
 
   def _note(

@@ -57,6 +57,12 @@ class Member:
       return False
     return self._frames * self._agreement.frame_s < self._speaker.end_s
 
+  @property
+  def done(self) -> bool:
+    """Whether it has played its part, and is where that led it."""
+    flies = self.part.order is not None and self._navigator.arrival_s is None
+    return self.part.done and not self.saying and not flies
+
   def step(self, observation: Mapping[str, np.ndarray]) -> np.ndarray:
     """Takes an observation and returns an action.
 
@@ -161,4 +167,4 @@ class Party:
   @property
   def done(self) -> bool:
     """Whether nobody has anything to do any more."""
-    return all(m.part.done and not m.saying for m in self.members)
+    return all(member.done for member in self.members)

@@ -9,7 +9,6 @@ from waggle_tasks import appearance as appearance_lib
 from waggle_tasks import errors, spoken, stages
 from waggle_tasks import sensor as sensor_lib
 from waggle_tasks.arenas import bounds, layouts
-from waggle_tasks.entities import optics
 from waggle_tasks.protocol import accord as accord_lib
 from waggle_tasks.protocol import agreement as agreement_lib
 from waggle_tasks.protocol import camera as camera_lib

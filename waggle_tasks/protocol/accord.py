@@ -127,9 +127,21 @@ class Accord:
     return self.ready_s + _LATE_S
 
   @property
+  def echo_s(self) -> float:
+    """How long after a letter one has seen that it was passed on."""
+    begin_s = self.confirm_s + self.ready_s + _LATE_S
+    return begin_s + self.letter_s + self.confirm_s + _LATE_S
+
+  @property
   def over_s(self) -> float:
     """A dancer that rests for so long says no more."""
-    return self.window_s + self.quiet_s + _LATE_S
+    wait_s = self.echo_s if self.form.hopping else self.window_s
+    return wait_s + self.quiet_s + _LATE_S
+
+  @property
+  def sense_s(self) -> float:
+    """All rest for so long before another dances: no answer is waited for."""
+    return self.confirm_s + self.late_s + _LATE_S / 2
 
 
 def frame(
