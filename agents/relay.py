@@ -138,3 +138,8 @@ class Relay:
     bits: str = '',
   ) -> None:
     self.diary.append(part.Entry(time_s, what, member, note, bits))
+
+
+def _is_same(one: letters.Letter, other: letters.Letter) -> bool:
+  """Whether two letters are one that was passed on."""
+  return (one.recipient, one.payload) == (other.recipient, other.payload)
