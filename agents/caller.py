@@ -7,6 +7,8 @@ said again that somebody lacks: selective repeat. Tries are bounded.
 
 from collections.abc import Sequence
 
+import numpy as np
+
 from waggle_tasks.agents import part, strips
 from waggle_tasks.protocol import accord as accord_lib
 from waggle_tasks.protocol import letters
@@ -28,6 +30,7 @@ class Caller:
     member: int,
     bits: str,
     blind: bool = False,
+    seed: int = 0,
   ) -> None:
     """Waits to be allowed to begin.
 
@@ -36,7 +39,9 @@ class Caller:
       member: Its own number.
       bits: The payload, or the message that parts hold.
       blind: Whether to ask nobody, and to say all in every try.
+      seed: Of what is drawn.
     """
+    self._random = np.random.RandomState([seed, member])
     self._accord, self._blind = accord, blind
     self._audience = [view.member for view in accord.views(member)]
     chunks = accord.parts.cut(bits) if accord.parts else (bits,)
@@ -144,7 +149,8 @@ class Caller:
     else:
       self._try += 1
       self._queue = sorted(whole if self._blind else lacking)
-      self._next_s = now_s + self._accord.quiet_s
+      more_s = self._random.uniform(0.0, self._accord.spread_s)
+      self._next_s = now_s + self._accord.quiet_s + more_s
       self._asks_until_s = None
 
   @property

@@ -243,6 +243,7 @@ class Conversation:
     """How long it lasts at most: all tries of all, and the flights."""
     accord, count = self.accord, 1
     round_s = accord.letter_s + accord.window_s + accord.quiet_s
+    round_s += accord.spread_s
     if accord.parts:
       round_s += (accord.parts.count - 1) * (accord.letter_s + accord.gap_s)
     if self.mission == 'relay':

@@ -45,7 +45,7 @@ def cast(scene: conversation.Conversation) -> list[part.Part]:
   if scene.mission == 'ack':
     said = scene.bits or scene.payload
     return [
-      caller.Caller(accord, 0, said, scene.blind),
+      caller.Caller(accord, 0, said, scene.blind, scene.seed),
       *(listener.Listener(accord, k, scene.blind) for k in numbers[1:]),
     ]
   dancers = numbers[: scene.dancers]

@@ -38,7 +38,9 @@ class Accord:
     tries: How often a letter is said at most, 1 to 20.
     ready_s: For how long a dancer must rest before it is answered, 0.5 to 5 s:
       it has to learn how its audience looks at rest.
-    quiet_s: The rest before a letter is said again, 0.5 to 10 s.
+    quiet_s: The least rest before a letter is said again, 0.5 to 10 s...
+    spread_s: ...and how much longer it may be, by what is drawn, 0 to 10 s: what
+      hides a dancer again and again does not hide it every time.
     gap_s: The rest between two parts, 0.3 to 5 s.
   """
 
@@ -49,12 +51,13 @@ class Accord:
   tries: int = 3
   ready_s: float = 1.1
   quiet_s: float = 1.3
+  spread_s: float = 2.5
   gap_s: float = 0.5
 
   def __post_init__(self) -> None:
     bounds = {
       'tries': (1, 20), 'ready_s': (0.5, 5.0), 'quiet_s': (0.5, 10.0),
-      'gap_s': (0.3, 5.0),
+      'spread_s': (0.0, 10.0), 'gap_s': (0.3, 5.0),
     }  # fmt: skip
     checks.settle_numbers(self, bounds, AccordError)
     if not isinstance(self.agreement.spoken.alphabet, levels.Levels):
@@ -136,7 +139,7 @@ class Accord:
   def over_s(self) -> float:
     """A dancer that rests for so long says no more."""
     wait_s = self.echo_s if self.form.hopping else self.window_s
-    return wait_s + self.quiet_s + _LATE_S
+    return wait_s + self.quiet_s + self.spread_s + _LATE_S
 
   @property
   def sense_s(self) -> float:
