@@ -1,6 +1,7 @@
 """A conversation: every choice of one, frozen and checked."""
 
 import dataclasses
+import functools
 import math
 
 import numpy as np
@@ -207,7 +208,7 @@ class Conversation:
       for number, pose in enumerate(found)
     }
 
-  @property
+  @functools.cached_property
   def accord(self) -> accord_lib.Accord:
     """What all members know."""
     fovy_deg = self.camera_fovy_deg or _FOVY_DEG.get(

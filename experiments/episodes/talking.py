@@ -6,61 +6,12 @@ import gc
 import numpy as np
 
 from waggle_tasks import conversation, conversations, registry
-from waggle_tasks.agents import (
-  caller,
-  contender,
-  listener,
-  member,
-  part,
-  relay,
-)
+from waggle_tasks.agents import member
+from waggle_tasks.experiments.episodes import casting
 from waggle_tasks.experiments.record import talk
-from waggle_tasks.protocol import letters
 
 # Looks on: the images of all members, and the time. It changes nothing.
 Onlooker = Callable[[list[np.ndarray], float], None]
-
-
-def told(scene: conversation.Conversation) -> tuple[talk.Told, ...]:
-  """What is to be told to whom."""
-  if scene.mission == 'relay':
-    return (talk.Told(0, scene.hops, scene.payload),)
-  if scene.mission == 'ack':
-    said = scene.bits or scene.payload
-    audience = range(1, scene.listeners + 1)
-    return tuple(talk.Told(0, each, said) for each in audience)
-  return tuple(
-    talk.Told(dancer, recipient, bits)
-    for dancer in range(scene.dancers)
-    for recipient, bits in scene.letters_of(dancer)
-  )
-
-
-def cast(scene: conversation.Conversation) -> list[part.Part]:
-  """What each member does, by number."""
-  accord, numbers = scene.accord, range(len(scene.poses()))
-  if scene.mission == 'relay':
-    first = letters.Letter(scene.payload, recipient=scene.hops)
-    return [relay.Relay(accord, k, None if k else first) for k in numbers]
-  if scene.mission == 'ack':
-    said = scene.bits or scene.payload
-    return [
-      caller.Caller(accord, 0, said, scene.blind, scene.seed),
-      *(listener.Listener(accord, k, scene.blind) for k in numbers[1:]),
-    ]
-  dancers = numbers[: scene.dancers]
-  return [
-    *(
-      contender.Contender(
-        accord, k, scene.letters_of(k), scene.seed, not scene.together
-      )
-      for k in dancers
-    ),
-    *(
-      listener.Listener(accord, k, flies=False)
-      for k in numbers[scene.dancers :]
-    ),
-  ]
 
 
 def hold(
@@ -72,7 +23,7 @@ def hold(
     scene: Its scenario.
     onlookers: Who looks on.
   """
-  parts = cast(scene)
+  parts = casting.cast(scene)
   party = member.Party(scene.accord, parts)
   environment = registry.of_task(conversations.build(scene), scene.seed)
   try:
@@ -93,7 +44,7 @@ def _play(
   homes = _places(environment)
   aside_m = np.zeros(len(party.members))
   contacts: set[tuple[str, str]] = set()
-  frames = danced = 0
+  frames, danced = 0, np.zeros(len(party.members))
   frame_s = task.agreement.frame_s
   while not timestep.last():
     action = party.step(timestep.observation)
@@ -104,7 +55,7 @@ def _play(
       onlooker(images, frames * frame_s)
     timestep = environment.step(action)
     frames += 1
-    danced += sum(each.saying for each in party.members)
+    danced += [each.saying for each in party.members]
     contacts |= {*task.contacts}
     off_m = np.linalg.norm((_places(environment) - homes)[:, :2], axis=1)
     drifts_m = task.fleet.drifts(frames * frame_s)
@@ -113,13 +64,13 @@ def _play(
     aside_m = np.where(waits, np.maximum(aside_m, off_m), aside_m)
   return talk.Talk(
     scene,
-    told(scene),
+    casting.told(scene),
     tuple(tuple(each.part.diary) for each in party.members),
     tuple(each.order_s for each in party.members),
     tuple(round(float(each), 6) for each in aside_m),
     tuple(sorted(contacts)),
     round(frames * frame_s, 6),
-    round(danced * frame_s, 6),
+    tuple((danced * frame_s).round(6).tolist()),
   )
 
 

@@ -43,7 +43,7 @@ class Talk:
       it was told to fly.
     contacts: Who touched.
     duration_s: How long it took.
-    dances_s: For how long members danced, all of them together.
+    dances_s: By member, for how long it danced.
   """
 
   scene: conversation.Conversation
@@ -53,7 +53,7 @@ class Talk:
   aside_m: tuple[float, ...]
   contacts: tuple[tuple[str, str], ...]
   duration_s: float
-  dances_s: float
+  dances_s: tuple[float, ...]
 
   def has(self, member: int) -> list[tuple[float, str]]:
     """When a member had all of a message, and what, as it read it."""

@@ -1,6 +1,7 @@
 """What all members of a conversation know before it begins, as one value."""
 
 import dataclasses
+import functools
 
 from waggle_tasks import errors
 from waggle_tasks.protocol import agreement as agreement_lib
@@ -39,8 +40,8 @@ class Accord:
     ready_s: For how long a dancer must rest before it is answered, 0.5 to 5 s:
       it has to learn how its audience looks at rest.
     quiet_s: The least rest before a letter is said again, 0.5 to 10 s...
-    spread_s: ...and how much longer it may be, by what is drawn, 0 to 10 s: what
-      hides a dancer again and again does not hide it every time.
+    spread_s: ...and how much longer it may be, by what is drawn, 0 to 10 s:
+      what hides a dancer again and again does not hide it every time.
     gap_s: The rest between two parts, 0.3 to 5 s.
   """
 
@@ -71,7 +72,7 @@ class Accord:
         f' member with 3 bits: got {len(self.seats)}'
       )
 
-  @property
+  @functools.cached_property
   def replies(self) -> letters.ReplyForm:
     """The fields of replies."""
     return letters.ReplyForm(
@@ -82,12 +83,12 @@ class Accord:
     """Whom a member sees, and where."""
     return seats.views(self.seats, member, self.agreement.camera)
 
-  @property
+  @functools.cached_property
   def letter_agreement(self) -> agreement_lib.Agreement:
     """What a reader of letters knows."""
     return self._agreed(self.form.num_bits)
 
-  @property
+  @functools.cached_property
   def reply_agreement(self) -> agreement_lib.Agreement:
     """What a reader of replies knows."""
     agreed = self._agreed(self.replies.num_bits)
@@ -103,12 +104,12 @@ class Accord:
     )
     return dataclasses.replace(self.agreement, units=units, packets=None)
 
-  @property
+  @functools.cached_property
   def letter_s(self) -> float:
     """From the first stroke of a letter to the end of END."""
     return _length_s(self.letter_agreement)
 
-  @property
+  @functools.cached_property
   def reply_s(self) -> float:
     """The same of a reply."""
     return _length_s(self.reply_agreement)
@@ -118,7 +119,7 @@ class Accord:
     """The rest after END that belongs to a frame."""
     return self.agreement.spoken.confirm_s
 
-  @property
+  @functools.cached_property
   def window_s(self) -> float:
     """How long after a letter all of its replies have been read."""
     begin_s = self.confirm_s + self.ready_s + _LATE_S
@@ -129,19 +130,19 @@ class Accord:
     """How long after a frame was read a reply to it may begin at the latest."""
     return self.ready_s + _LATE_S
 
-  @property
+  @functools.cached_property
   def echo_s(self) -> float:
     """How long after a letter one has seen that it was passed on."""
     begin_s = self.confirm_s + self.ready_s + _LATE_S
     return begin_s + self.letter_s + self.confirm_s + _LATE_S
 
-  @property
+  @functools.cached_property
   def over_s(self) -> float:
     """A dancer that rests for so long says no more."""
     wait_s = self.echo_s if self.form.hopping else self.window_s
     return wait_s + self.quiet_s + self.spread_s + _LATE_S
 
-  @property
+  @functools.cached_property
   def sense_s(self) -> float:
     """All rest for so long before another dances: no answer is waited for."""
     return self.confirm_s + self.late_s + _LATE_S / 2
