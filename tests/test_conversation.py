@@ -11,7 +11,7 @@ import pytest
 import waggle_tasks
 from waggle_tasks import conversation, errors, plain
 from waggle_tasks import sensor as sensor_lib
-from waggle_tasks.experiments.episodes import talking
+from waggle_tasks.experiments.episodes import talk_rules, talking
 from waggle_tasks.experiments.record import talk
 from waggle_tasks.protocol import seats
 from waggle_tasks.tasks import surroundings
@@ -122,6 +122,7 @@ def test_who_saw_nothing_is_told_again() -> None:
   assert found.diaries[0][-1].note == '1 of 1 confirmed after 2 tries'
 
 
+@pytest.mark.slow
 def test_two_dances_at_once_are_read_each_by_whom_it_is_for() -> None:
   found = held(**TURNS, together=True, seed=1)
   assert found.passed
@@ -159,6 +160,66 @@ def test_nobody_confirms_what_it_did_not_read() -> None:
   assert found.confirmed == ()
   assert found.false_confirmations == found.wrong == found.strays == ()
   assert found.diaries[0][-1].note == 'given up after 2 tries: 0 of 3 confirmed'
+
+
+def test_rules_alone_tell_all_in_spite_of_losses() -> None:
+  for changes in (
+    {},
+    {'bits': '0110100001101000'},
+    {'mission': 'relay'},
+    TURNS,
+  ):
+    scene = conversation.Conversation(tries=12, **changes)
+    whole = talk_rules.play(scene, 0.0, 0)
+    assert whole.passed
+    for seed in range(3):
+      lossy = talk_rules.play(scene, 0.3, seed)
+      assert lossy.passed
+      assert lossy.duration_s >= whole.duration_s
+
+
+def test_rules_alone_confirm_nothing_that_was_lost() -> None:
+  found = talk_rules.play(conversation.Conversation(tries=2), 1.0, 0)
+  assert found.delivered == ()
+  assert found.confirmed == ()
+  assert not found.passed
+
+
+def test_confirmations_tell_more_with_fewer_dances_than_repetition() -> None:
+  asked = conversation.Conversation(tries=12)
+  blind = conversation.Conversation(tries=7, blind=True)
+  dances_s = {}
+  for scene in (asked, blind):
+    held = [talk_rules.play(scene, 0.3, seed) for seed in range(20)]
+    assert all(len(each.delivered) == 3 for each in held)
+    dances_s[scene.blind] = sum(each.dances_s[0] for each in held)
+  assert dances_s[False] < 0.7 * dances_s[True]
+
+
+@pytest.mark.parametrize(
+  ('flags', 'text'),
+  [
+    (['--loss=0.3'], '`loss` must be given with `times`'),
+    (['--times=0'], '`times` must be between 1 and'),
+    (['--times=2', '--loss=1.5'], '`loss` must be between 0 and 1'),
+    (['--times=2', '--output=x'], '`output` must not be given beside'),
+    (['--text=a', '--bits=01'], '`text` must not be given beside `bits`'),
+  ],
+)
+def test_flags_that_do_not_go_together_are_refused(
+  waggle: Waggle, tmp_path: pathlib.Path, flags: list[str], text: str
+) -> None:
+  done = waggle('converse', *flags, cwd=tmp_path)
+  assert done.returncode == 2
+  assert text in done.stderr
+  assert [*tmp_path.iterdir()] == []
+
+
+def test_the_command_counts(waggle: Waggle, tmp_path: pathlib.Path) -> None:
+  done = waggle('converse', '--times=3', '--loss=0', cwd=tmp_path)
+  assert done.returncode == 0
+  assert 'conversations passed: 3/3' in done.stdout
+  assert 'delivered: 9/9 (100.00%)' in done.stdout
 
 
 def test_the_command_leaves_a_page_and_its_record(
