@@ -1,6 +1,6 @@
 """An observer: a Crazyflie with an eye, which is all that it has."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 from dm_control import composer, mjcf
 from dm_control.composer.observation import observable
@@ -28,6 +28,7 @@ class Observer(crazyflie.Crazyflie):
     sensor: sensor_lib.Sensor = sensor_lib.Sensor(),
     agreement: agreement_lib.Agreement = agreement_lib.Agreement(),
     dynamics: str = 'ideal',
+    accent_rgba: Sequence[float] = crazyflie.AZURE,
   ) -> None:
     """Builds the model.
 
@@ -38,8 +39,9 @@ class Observer(crazyflie.Crazyflie):
       sensor: What spoils its images.
       agreement: What both sides know: its camera and its rate.
       dynamics: One of `limits.DYNAMICS`.
+      accent_rgba: See `crazyflie.Crazyflie`.
     """
-    super()._build(name, crazyflie.AZURE, dynamics == 'rotors')
+    super()._build(name, accent_rgba, dynamics == 'rotors')
     self._incremental = camera == 'incremental'
     self._eye = self.airframe.add(
       'camera', name='eye', pos=(eye_offset_m, 0, 0),

@@ -5,7 +5,7 @@ from typing import Any
 
 from waggle_tasks import conversation, errors
 from waggle_tasks.arenas import flight_room
-from waggle_tasks.entities import observer
+from waggle_tasks.entities import crazyflie, observer
 from waggle_tasks.protocol import checks
 from waggle_tasks.tasks import furnish, talk
 
@@ -17,7 +17,11 @@ def build(scene: conversation.Conversation) -> talk.Talk:
   agreement, poses = scene.accord.agreement, scene.poses()
   members = tuple(
     observer.Observer(
-      name, sensor=scene.sensor, agreement=agreement, dynamics=scene.dynamics
+      name,
+      sensor=scene.sensor,
+      agreement=agreement,
+      dynamics=scene.dynamics,
+      accent_rgba=crazyflie.AMBER,  # All may dance, and azure is hard to see.
     )
     for name in poses
   )
