@@ -21,8 +21,8 @@ class Caller:
     confirmed: Who has all of it, as far as it knows.
   """
 
-  hears = part.REPLIES
-  order = None
+  hears: str = part.REPLIES
+  order: str | None = None
 
   def __init__(
     self,

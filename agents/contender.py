@@ -27,8 +27,8 @@ class Contender:
     confirmed: The recipients that confirmed their letters.
   """
 
-  hears = part.REPLIES
-  order = None
+  hears: str = part.REPLIES
+  order: str | None = None
 
   def __init__(
     self,

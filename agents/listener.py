@@ -32,7 +32,7 @@ class Listener:
   all when that is later than the sender would see it.
   """
 
-  hears = part.LETTERS
+  hears: str = part.LETTERS
 
   def __init__(
     self,

@@ -25,7 +25,7 @@ class Relay:
     confirmed: Whether it was seen to be passed on.
   """
 
-  hears = part.LETTERS
+  hears: str = part.LETTERS
 
   def __init__(
     self,

@@ -49,7 +49,7 @@ def main(argv: Sequence[str]) -> int:
   del argv
   scene = conversation_flags.read()
   if _TIMES.value is not None:
-    return _count(scene)
+    return _count(scene, _TIMES.value)
   if _LOSS.value is not None:
     raise errors.WaggleError('`loss` must be given with `times`')
   # Imported here: help needs no simulator.
@@ -69,14 +69,14 @@ def main(argv: Sequence[str]) -> int:
   return 0 if held.passed else 1
 
 
-def _count(scene: conversation.Conversation) -> int:
+def _count(scene: conversation.Conversation, times: int) -> int:
   """Holds a conversation many times and prints what that came to."""
   from waggle_tasks.experiments.studies import talk_study
 
   for name in ('output', 'video'):
     if flags.FLAGS[name].present:
       raise errors.WaggleError(f'`{name}` must not be given beside `times`')
-  times = checks.integer('times', _TIMES.value, 1, 10**6, errors.WaggleError)
+  times = checks.integer('times', times, 1, 10**6, errors.WaggleError)
   every = talk_study.held(scene, times, _LOSS.value)
   held = [*tqdm.tqdm(every, desc='conversations', total=times)]
   print(talk_tables.counts(held))

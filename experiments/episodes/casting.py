@@ -29,20 +29,16 @@ def cast(scene: conversation.Conversation) -> list[part.Part]:
     return [relay.Relay(accord, k, None if k else first) for k in numbers]
   if scene.mission == 'ack':
     said = scene.bits or scene.payload
-    return [
-      caller.Caller(accord, 0, said, scene.blind, scene.seed),
-      *(listener.Listener(accord, k, scene.blind) for k in numbers[1:]),
-    ]
-  dancers = numbers[: scene.dancers]
-  return [
-    *(
-      contender.Contender(
-        accord, k, scene.letters_of(k), scene.seed, not scene.together
-      )
-      for k in dancers
-    ),
-    *(
-      listener.Listener(accord, k, flies=False)
-      for k in numbers[scene.dancers :]
-    ),
+    speaker = caller.Caller(accord, 0, said, scene.blind, scene.seed)
+    readers = [listener.Listener(accord, k, scene.blind) for k in numbers[1:]]
+    return [speaker, *readers]
+  dancers = [
+    contender.Contender(
+      accord, k, scene.letters_of(k), scene.seed, not scene.together
+    )
+    for k in numbers[: scene.dancers]
   ]
+  audience = [
+    listener.Listener(accord, k, flies=False) for k in numbers[scene.dancers :]
+  ]
+  return [*dancers, *audience]

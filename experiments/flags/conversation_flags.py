@@ -31,7 +31,7 @@ def read() -> conversation.Conversation:
   for name, field in scenario_fields.table(_KIND).items():
     flag = flags.FLAGS[name]
     if flag.present:
-      value = flag.value
+      value: Any = flag.value
       if field.form is not None:
         value = scenario_fields.parse(name, value)
       parts.setdefault(field.part, {})[field.name] = field.taken(value)

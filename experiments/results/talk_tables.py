@@ -63,6 +63,10 @@ def counts(held: Sequence[talk_lib.Talk]) -> str:
       f'a hop, from dance to dance: {_mean(hops_s):.2f} s in the mean,'
       f' {max(hops_s):.2f} at most'
     )
+  for each in held:
+    if not each.passed:
+      told_by = '; '.join(_verdict(each))
+      lines.append(f'seed {each.scene.seed}: {told_by}')
   return '\n'.join(lines)
 
 

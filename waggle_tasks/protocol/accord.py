@@ -12,9 +12,9 @@ from waggle_tasks.protocol import (
   letters,
   levels,
   payload,
-  seats,
 )
 from waggle_tasks.protocol import parts as parts_lib
+from waggle_tasks.protocol import seats as seats_lib
 from waggle_tasks.protocol.symbols import Symbol
 
 # Replies about parts have a check; a number alone is checked by its strip.
@@ -46,7 +46,7 @@ class Accord:
   """
 
   agreement: agreement_lib.Agreement
-  seats: tuple[seats.Seat, ...]
+  seats: tuple[seats_lib.Seat, ...]
   form: letters.Form = letters.Form()
   parts: parts_lib.Parts | None = None
   tries: int = 3
@@ -79,9 +79,9 @@ class Accord:
       self.form.addressed, self.parts.count if self.parts else 0
     )
 
-  def views(self, member: int) -> tuple[seats.View, ...]:
+  def views(self, member: int) -> tuple[seats_lib.View, ...]:
     """Whom a member sees, and where."""
-    return seats.views(self.seats, member, self.agreement.camera)
+    return seats_lib.views(self.seats, member, self.agreement.camera)
 
   @functools.cached_property
   def letter_agreement(self) -> agreement_lib.Agreement:
