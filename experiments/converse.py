@@ -78,7 +78,7 @@ def _count(scene: conversation.Conversation, times: int) -> int:
       raise errors.WaggleError(f'`{name}` must not be given beside `times`')
   times = checks.integer('times', times, 1, 10**6, errors.WaggleError)
   every = talk_study.held(scene, times, _LOSS.value)
-  held = [*tqdm.tqdm(every, desc='conversations', total=times)]
+  held = [*tqdm.tqdm(every, desc='conversations', total=times, mininterval=2)]
   print(talk_tables.counts(held))
   return 0 if all(each.passed for each in held) else 1
 

@@ -252,6 +252,17 @@ CLAIMS = {
   'boundary': kinds.Claim(
     'boundary', kinds.TEXT, ('boundary', '--half_span_deg=45')
   ),
+  'converse': kinds.Claim(
+    'converse', kinds.UNCHECKED, detail='a test holds such a conversation'
+  ),
+  'converse-rules': kinds.Claim(
+    'converse-rules', kinds.TEXT,
+    ('converse', '--times=1000', '--loss=0.3', '--tries=12'),
+  ),
+  'converse-blind': kinds.Claim(
+    'converse-blind', kinds.TEXT,
+    ('converse', '--blind', '--tries=7', '--times=1000', '--loss=0.3'),
+  ),
   'timings': kinds.Claim(
     'timings', kinds.UNCHECKED,
     detail='times and memory, which differ between runs',
