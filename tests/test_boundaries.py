@@ -268,7 +268,7 @@ SIMULATING = frozenset({'episodes', 'bench_parts'})
 SIMULATING_MODULES = frozenset({
   'studies.link_study', 'studies.replay_flight', 'studies.runner',
   'studies.spoilers', 'studies.suite_case', 'studies.suite_study',
-  'studies.sweep_flight', 'studies.sweep_study',
+  'studies.sweep_flight', 'studies.sweep_study', 'studies.talk_study',
   'video.film', 'video.lens', 'video.shots',
 })  # fmt: skip
 IMPORT_ALL = """
