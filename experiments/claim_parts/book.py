@@ -7,7 +7,7 @@ together take less than 30 minutes on two cores.
 
 from typing import Any
 
-from waggle_tasks.experiments.claim_parts import kinds
+from waggle_tasks.experiments.claim_parts import kinds, talk_claims
 
 _DECOYS: dict[str, Any] = {
   'control': 'circles,diagonals,random_walk,navigation,swapped,repeated,'
@@ -55,6 +55,7 @@ def _disturbed(*flags: str, **grid: str) -> kinds.Claim:
 _SWAY = '--observer_drift_m=0.002', '--observer_yaw_drift_deg=0.1'
 
 CLAIMS = {
+  **talk_claims.CLAIMS,
   'main-job': kinds.Claim('main-job', kinds.TEXT, ('broadcast',)),
   'main-totals': kinds.Claim('main-totals', kinds.COPY, detail='paper'),
   'map-far-aside': _sweep(
@@ -251,27 +252,6 @@ CLAIMS = {
   ),
   'boundary': kinds.Claim(
     'boundary', kinds.TEXT, ('boundary', '--half_span_deg=45')
-  ),
-  'converse': kinds.Claim(
-    'converse', kinds.UNCHECKED, detail='a test holds such a conversation'
-  ),
-  'converse-dropped': kinds.Claim(
-    'converse-dropped', kinds.TEXT,
-    ('converse', '--times=3', '--tries=8', '--dropped_share=0.3'),
-  ),
-  'converse-relay': kinds.Claim(
-    'converse-relay', kinds.TEXT, ('converse', '--mission=relay', '--times=1')
-  ),
-  'converse-dancers': kinds.Claim(
-    'converse-dancers', kinds.UNCHECKED, detail='a slow test holds another one'
-  ),
-  'converse-rules': kinds.Claim(
-    'converse-rules', kinds.TEXT,
-    ('converse', '--times=1000', '--loss=0.3', '--tries=12'),
-  ),
-  'converse-blind': kinds.Claim(
-    'converse-blind', kinds.TEXT,
-    ('converse', '--blind', '--tries=7', '--times=1000', '--loss=0.3'),
   ),
   'timings': kinds.Claim(
     'timings', kinds.UNCHECKED,
