@@ -54,8 +54,7 @@ def _disturbed(*flags: str, **grid: str) -> kinds.Claim:
 
 _SWAY = '--observer_drift_m=0.002', '--observer_yaw_drift_deg=0.1'
 
-CLAIMS = {
-  **talk_claims.CLAIMS,
+CLAIMS = talk_claims.CLAIMS | {
   'main-job': kinds.Claim('main-job', kinds.TEXT, ('broadcast',)),
   'main-totals': kinds.Claim('main-totals', kinds.COPY, detail='paper'),
   'map-far-aside': _sweep(
