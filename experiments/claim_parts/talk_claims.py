@@ -10,6 +10,9 @@ CLAIMS = {
     'converse-dropped', kinds.TEXT,
     ('converse', '--times=3', '--tries=8', '--dropped_share=0.3'),
   ),
+  'converse-hidden': kinds.Claim(
+    'converse-hidden', kinds.UNCHECKED, detail='each takes minutes'
+  ),
   'converse-relay': kinds.Claim(
     'converse-relay', kinds.TEXT, ('converse', '--mission=relay', '--times=1')
   ),
