@@ -10,6 +10,10 @@ CLAIMS = {
     'converse-dropped', kinds.TEXT,
     ('converse', '--times=3', '--tries=8', '--dropped_share=0.3'),
   ),
+  'converse-five': kinds.Claim(
+    'converse-five', kinds.TEXT,
+    ('converse', '--times=4', '--listeners=5', '--seed=10'),
+  ),
   'converse-hidden': kinds.Claim(
     'converse-hidden', kinds.UNCHECKED, detail='each takes minutes'
   ),
