@@ -1,6 +1,6 @@
 """An observer: a Crazyflie with an eye, which is all that it has."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 from dm_control import composer, mjcf
 from dm_control.composer.observation import observable
@@ -30,6 +30,7 @@ class Observer(crazyflie.Crazyflie):
     agreement: agreement_lib.Agreement = agreement_lib.Agreement(),
     dynamics: str = 'ideal',
     looks_with: eyes.Eye = eyes.Eye(),
+    accent_rgba: Sequence[float] = crazyflie.AZURE,
   ) -> None:
     """Builds the model.
 
@@ -41,8 +42,9 @@ class Observer(crazyflie.Crazyflie):
       agreement: What both sides know: its camera and its rate.
       dynamics: One of `limits.DYNAMICS`.
       looks_with: What its camera is, beyond that of the agreement.
+      accent_rgba: See `crazyflie.Crazyflie`.
     """
-    super()._build(name, crazyflie.AZURE, dynamics == 'rotors')
+    super()._build(name, accent_rgba, dynamics == 'rotors')
     self._incremental = camera == 'incremental'
     seen_with = agreement.camera
     drawn = lenses.drawn(seen_with, looks_with)

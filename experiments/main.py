@@ -17,6 +17,7 @@ COMMANDS = {
   'broadcast': 'Fly one dance and let every observer read and follow it.',
   'view': "Show a dance in MuJoCo's viewer, where there is a display.",
   'agreement': 'Print what both sides know, as a file to read recordings by.',
+  'converse': 'Hold a conversation: confirm, pass on, or speak in turns.',
   'decode': "Read a run's raw captures again, or any recording of a dance.",
   'report': 'Make the page of a run, suite, sweep or link again from its data.',
   'gallery': 'Make the pictures of the documentation.',

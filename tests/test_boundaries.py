@@ -273,7 +273,7 @@ SIMULATING_MODULES = frozenset({
   'studies.ladder_study', 'studies.link_study', 'studies.replay_flight',
   'studies.runner',
   'studies.spoilers', 'studies.suite_case', 'studies.suite_study',
-  'studies.sweep_flight', 'studies.sweep_study',
+  'studies.sweep_flight', 'studies.sweep_study', 'studies.talk_study',
   'video.board_films', 'video.board_pictures', 'video.eye_shots', 'video.film',
   'video.lens', 'video.shots',
 })  # fmt: skip

@@ -3,7 +3,7 @@
 from dm_control import composer
 import mujoco
 
-from waggle_tasks import fidelity, runtime, scenarios
+from waggle_tasks import conversations, fidelity, runtime, scenarios
 from waggle_tasks import scenario as scenario_lib
 from waggle_tasks.arenas import flight_room, layouts
 from waggle_tasks.entities import lenses, observer, performer
@@ -97,8 +97,8 @@ def load(name: str, **changes: object) -> Environment:
   """Makes the environment of a named scenario.
 
   Args:
-    name: One of `SCENARIOS`.
-    **changes: Fields of `Scenario` and their new values.
+    name: One of `SCENARIOS`, or 'conversation'.
+    **changes: Fields of `Scenario`, or of `Conversation`, and their new values.
 
   Returns:
     The environment; close it in the thread that made it.
@@ -106,4 +106,6 @@ def load(name: str, **changes: object) -> Environment:
   Raises:
     ScenarioError: see `scenarios.find`.
   """
+  if name == conversations.NAME:
+    return of_task(*conversations.task(**changes))
   return environment(find(name, **changes))

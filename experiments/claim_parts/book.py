@@ -12,6 +12,7 @@ from waggle_tasks.experiments.claim_parts import (
   eye_claims,
   kinds,
   sensing_claims,
+  talk_claims,
   time_claims,
 )
 
@@ -263,6 +264,7 @@ CLAIMS = {
   **colony_claims.CLAIMS,
   **eye_claims.CLAIMS,
   **sensing_claims.CLAIMS,
+  **talk_claims.CLAIMS,
   **time_claims.CLAIMS,
 }  # fmt: skip
 

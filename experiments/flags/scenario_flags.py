@@ -14,9 +14,13 @@ from waggle_tasks.protocol import packets
 flags.disclaim_key_flags()
 
 
-def define() -> None:
-  """Defines the flags for the launcher that calls this."""
-  known = scenario_fields.table()
+def define(kind: type = scenario.Scenario) -> None:
+  """Defines the flags for the launcher that calls this.
+
+  Args:
+    kind: Whose fields they are.
+  """
+  known = scenario_fields.table(kind)
   for name, field in known.items():
     default, text = field.default, _help(field.text, known) or name
     match default:

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 import math
+from typing import Protocol
 
 from dm_control import mjcf
 import numpy as np
@@ -9,11 +10,35 @@ import numpy as np
 from waggle_tasks.arenas import flight_room, layouts
 from waggle_tasks.entities import autopilot, controller, crazyflie
 from waggle_tasks.protocol import agreement as agreement_lib
+from waggle_tasks.tasks import air as air_lib
 from waggle_tasks.tasks import convoy, estimators, weather
 from waggle_tasks.tasks import drift as drift_lib
-from waggle_tasks.tasks import parts as parts_lib
 
 Offsets = dict[str, tuple[np.ndarray, np.ndarray]]
+
+
+class Made(Protocol):
+  """What a fleet asks of the parts of a task, see `parts.Parts`."""
+
+  @property
+  def duration_s(self) -> float:
+    """How long an episode lasts at most."""
+    ...
+
+  @property
+  def agreement(self) -> agreement_lib.Agreement:
+    """What all know."""
+    ...
+
+  @property
+  def air(self) -> air_lib.Air:
+    """What the air does."""
+    ...
+
+  @property
+  def estimator(self) -> str:
+    """How vehicles know where they are."""
+    ...
 
 
 class Fleet:
@@ -100,7 +125,7 @@ class Fleet:
   def begin(
     self,
     physics: mjcf.Physics,
-    parts: parts_lib.Parts,
+    parts: Made,
     random_state: np.random.RandomState,
   ) -> None:
     """Begins an episode, with every vehicle at its place.
