@@ -9,6 +9,7 @@ from collections.abc import Mapping, Sequence
 import os
 import sys
 import time
+from typing import Any
 
 from absl import flags
 
@@ -92,7 +93,7 @@ class Window:
       height_m: The height that it looks at first.
     """
     self._speed, self._height_m = speed, height_m
-    self._viewer = None
+    self._viewer: Any = None  # A handle of `mujoco.viewer`.
     self._begun_s = 0.0
 
   def __call__(self, step: episode.Step) -> None:
