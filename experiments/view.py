@@ -5,11 +5,9 @@ be turned, zoomed and closed at any moment. Exit status 0, or 2 on bad input and
 where there is no display.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 import os
 import sys
-import time
-from typing import Any
 
 from absl import flags
 
@@ -21,8 +19,8 @@ from waggle_tasks.experiments.flags import (
   receiver_flag,
   scenario_flags,
 )
-from waggle_tasks.experiments.record import episode
 from waggle_tasks.experiments.studies import live
+from waggle_tasks.experiments.video import window
 from waggle_tasks.protocol import checks
 
 scenario_flags.define()
@@ -35,18 +33,6 @@ _SPEED = flags.DEFINE_float(
   'speed', 1.0, 'Simulated seconds in a second, 0.01 to 100.'
 )
 
-_DISPLAYS = 'DISPLAY', 'WAYLAND_DISPLAY'
-# Where it looks from, first: the dancer from behind the observers.
-_DISTANCE_M, _AZIMUTH_DEG, _ELEVATION_DEG = 4.5, 90.0, -15.0
-
-
-class DisplayError(errors.WaggleError):
-  """No window can be opened."""
-
-
-class ClosedError(Exception):
-  """The window was closed."""
-
 
 def main(argv: Sequence[str]) -> int:
   """Shows the scenario of the flags and returns the exit status."""
@@ -54,79 +40,19 @@ def main(argv: Sequence[str]) -> int:
   speed = checks.number('speed', _SPEED.value, 0.01, 100.0, errors.WaggleError)
   scene, receiver_name = config_flag.chosen(_CONFIG, _RECEIVER)
   foresight.tell([scene], receiver_name)
-  check_display(os.environ, sys.platform)
+  window.check_display(os.environ, sys.platform)
   # Imported here: help needs no simulator.
   from waggle_tasks.experiments.episodes import rollout
 
   with live.onlookers(scene, wanted=True) as lines:
-    window = Window(speed, scene.hover_height_m)
+    shown = window.Window(speed, scene.hover_height_m)
     try:
-      rollout.run(scene, receiver_name, [*lines, window])
-    except ClosedError:
+      rollout.run(scene, receiver_name, [*lines, shown])
+    except window.ClosedError:
       pass
     finally:
-      window.close()
+      shown.close()
   return 0
-
-
-def check_display(environ: Mapping[str, str], platform: str) -> None:
-  """Checks that a window may be opened.
-
-  Raises:
-    DisplayError: There is no display, by the environment of this process.
-  """
-  if platform == 'linux' and not any(environ.get(name) for name in _DISPLAYS):
-    raise DisplayError(
-      f'`waggle view` must have a display: neither {" nor ".join(_DISPLAYS)} is'
-      ' set. `waggle broadcast --video` films without one'
-    )
-
-
-class Window:
-  """MuJoCo's passive viewer, which follows an episode at a pace."""
-
-  def __init__(self, speed: float, height_m: float) -> None:
-    """Makes one that opens with the first step.
-
-    Args:
-      speed: Simulated seconds in a second.
-      height_m: The height that it looks at first.
-    """
-    self._speed, self._height_m = speed, height_m
-    self._viewer: Any = None  # A handle of `mujoco.viewer`.
-    self._begun_s = 0.0
-
-  def __call__(self, step: episode.Step) -> None:
-    """Shows the state after a step, not before its time.
-
-    Raises:
-      ClosedError: if the window was closed.
-    """
-    physics = step.environment.physics
-    if self._viewer is None:
-      self._open(physics.model.ptr, physics.data.ptr)
-    if not self._viewer.is_running():
-      raise ClosedError
-    self._viewer.sync()
-    due_s = self._begun_s + physics.time() / self._speed
-    time.sleep(max(0.0, due_s - time.monotonic()))
-
-  def _open(self, model: object, data: object) -> None:
-    from mujoco import viewer
-
-    self._viewer = viewer.launch_passive(
-      model, data, show_left_ui=False, show_right_ui=False
-    )
-    camera = self._viewer.cam
-    camera.lookat[:] = 0.0, 0.0, self._height_m
-    camera.distance = _DISTANCE_M
-    camera.azimuth, camera.elevation = _AZIMUTH_DEG, _ELEVATION_DEG
-    self._begun_s = time.monotonic()
-
-  def close(self) -> None:
-    """Closes the window."""
-    if self._viewer is not None:
-      self._viewer.close()
 
 
 if __name__ == '__main__':

@@ -33,7 +33,7 @@ OTHERS = {
   ),
   'language': 'swift', 'bits': '01', 'repeat': 2,
   'dynamics': 'rotors', 'estimator': 'mocap', 'gusts': True, 'downwash': True,
-  'safety': 'avoid', 'meaning': 'place',
+  'safety': 'avoid', 'meaning': 'place', 'furniture': 3, 'fidelity': 'tracks',
   'eye': 'webcam', 'lens': 'fisheye', 'grey': True, 'mosaic': True,
   'well_electrons': 100.0, 'codec': 'jpeg', 'jpeg_quality': 50, 'h264_crf': 30,
 }  # fmt: skip
@@ -68,7 +68,7 @@ def test_every_field_that_is_changed_is_said(name: str) -> None:
     extra = {'performer_hover': 'log'}
   if name in ('estimator', 'wind_mps', 'gusts', 'downwash'):
     extra = {'dynamics': 'rotors'}
-  if name in ('bits', 'repeat'):
+  if name in ('bits', 'repeat', 'fidelity'):
     extra = {'language': 'swift'}
   if name in ('k1', 'k2', 'k3', 'p1', 'p2'):
     extra = {'lens': 'brown'}

@@ -22,7 +22,6 @@ from waggle_tasks.agents import (
   slots,
   windows,
 )
-from waggle_tasks.experiments import train_learned
 from waggle_tasks.experiments.episodes import evaluator, rollout
 from waggle_tasks.experiments.studies import learned_tracks, learned_training
 from waggle_tasks.protocol import agreement as agreement_lib
@@ -262,5 +261,9 @@ def test_the_weights_of_the_package_come_of_its_own_command(
 
 
 def test_training_refuses_a_language_that_there_is_not() -> None:
-  with pytest.raises(group.ReceiverError, match='`language` must be one of'):
-    train_learned.main(['train_learned', 'swfit'])
+  run = [sys.executable, '-m', 'waggle_tasks.experiments.train_learned']
+  child = subprocess.run(
+    [*run, 'swfit'], capture_output=True, text=True, timeout=100
+  )
+  assert child.returncode == 2
+  assert '`language` must be one of' in child.stderr

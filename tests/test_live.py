@@ -9,8 +9,8 @@ import types
 from mujoco import viewer
 import pytest
 
-from waggle_tasks.experiments import view
 from waggle_tasks.experiments.studies import live
+from waggle_tasks.experiments.video import window
 
 Waggle = Callable[..., subprocess.CompletedProcess[str]]
 
@@ -59,8 +59,8 @@ def test_no_window_is_promised_where_there_is_no_display(
   child = waggle('view', '--language=swift', DISPLAY='', WAYLAND_DISPLAY='')
   assert child.returncode == 2
   assert 'must have a display' in child.stderr
-  view.check_display({'WAYLAND_DISPLAY': 'wayland-0'}, 'linux')
-  view.check_display({}, 'darwin')
+  window.check_display({'WAYLAND_DISPLAY': 'wayland-0'}, 'linux')
+  window.check_display({}, 'darwin')
 
 
 def test_speed_is_checked_before_a_window_opens(waggle: Waggle) -> None:
@@ -98,11 +98,11 @@ def test_a_window_follows_an_episode_until_it_is_closed(
   )
   environment = types.SimpleNamespace(physics=physics)
   step = types.SimpleNamespace(environment=environment)
-  window = view.Window(1.0, 1.7)
-  window(step)
-  window(step)
+  shown = window.Window(1.0, 1.7)
+  shown(step)
+  shown(step)
   assert fake.cam.lookat[2] == 1.7
-  with pytest.raises(view.ClosedError):
-    window(step)
-  window.close()
+  with pytest.raises(window.ClosedError):
+    shown(step)
+  shown.close()
   assert fake.closed

@@ -119,7 +119,7 @@ def test_the_pins_that_work_are_declared(wheel: zipfile.ZipFile) -> None:
   ):
     assert pin in needs
   assert declared.get_all('Provides-Extra') == [
-    'video', 'cluster', 'analysis', 'rl', 'test', 'dev',
+    'video', 'cluster', 'analysis', 'rl', 'events', 'test', 'docs', 'dev',
   ]  # fmt: skip
 
 

@@ -136,7 +136,7 @@ def test_noise_of_a_camera_does_not_spoil_reading(
 
 
 @pytest.mark.parametrize(
-  ('name', 'hint'), [('ktl', 'Did you mean klt'), ('learned', 'klt')]
+  ('name', 'hint'), [('ktl', 'Did you mean klt'), ('neural', 'klt')]
 )
 def test_an_unknown_receiver_is_refused_with_the_names_there_are(
   name: str, hint: str
