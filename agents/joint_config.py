@@ -18,6 +18,8 @@ class Reading(group.Group):
       how far that is from it: less is an erasure.
     max_misfit: How far a symbol may be from what was seen, as a share of the
       squared distance to the next one: 0.25 is half-way.
+    max_worst: The same of any one level: a word of which one is another level
+      is none, even if a code would mend it and a wander would explain it.
     max_end: The same of END and the rest after it, beside a rest without END.
     max_rest: How far from the hover point the dancer may rest before START and
       after END, by what was seen of the frame between, as a share of how far
@@ -33,6 +35,7 @@ class Reading(group.Group):
   min_seen: float = group.number(0.5, 0.1, 1)
   min_clear: float = group.number(0.4, 0, 1)
   max_misfit: float = group.number(0.2, 0, 1)
+  max_worst: float = group.number(0.18, 0, 1)
   max_end: float = group.number(0.25, 0, 1)
   max_rest: float = group.number(0.45, 0, 1)
   max_astray: float = group.number(0.2, 0, 1)

@@ -8,6 +8,7 @@ import numpy as np
 from waggle_tasks.agents import joint_config, lock, slots
 from waggle_tasks.agents import shapes as shapes_lib
 
+_SEEN = 0.25  # Of a slot, to be judged by itself.
 _SAME_M = 1e-6  # END of gestures begins where it ends, but for rounding.
 
 
@@ -19,6 +20,8 @@ class Reading:
     misfit: How far its strokes are from what was seen of them, as a share of
       how far the nearest other stroke is from each: 0.25 where everything was
       half-way between two.
+    worst: The same of the level that fits worst, of those that were seen; 0
+      for gestures.
     end: How far END and the rest after it are from what was seen, as a share
       of how far a dancer would be that stayed where it was, or one level
       beside.
@@ -33,6 +36,7 @@ class Reading:
   """
 
   misfit: float
+  worst: float
   end: float
   end_seen: float
   rest: float
@@ -51,13 +55,16 @@ def judge(
   """What a word of a frame stands on, from a view, by poses."""
   shapes, count = frame.shapes, frame.count
   states = [0, *(int(shapes.after[symbol]) for symbol in word)]
-  misfit = near = seen_s = 0.0
+  misfit = near = seen_s = worst = 0.0
   for number, (state, symbol) in enumerate(zip(states, word, strict=False)):
     part = frame.part(number, poses[number + 1])
     own = frame.costs(number, part)[view, state, symbol]
     nearest = _nearest(shapes.strokes[view, state], symbol) * shapes.stroke_s
     part_s = min(float(part.weights_s.sum()), shapes.slot_s)
-    misfit, near = misfit + own, near + nearest * part_s / shapes.slot_s
+    level = nearest * part_s / shapes.slot_s
+    misfit, near = misfit + own, near + level
+    if len(shapes.ends[view]) > 1 and part_s > _SEEN * shapes.slot_s:
+      worst = max(worst, float(own / level))
     seen_s += part_s
   begin_s = frame.starts_s(0, poses[1])
   whole = frame.samples.between(begin_s, frame.starts_s(count, poses[-1]))
@@ -73,6 +80,7 @@ def judge(
   error = float(frame.costs(count, ended)[view, states[-1]])
   return Reading(
     float(misfit / max(near, 1e-9)),
+    worst,
     error / max(stay, 1e-9),
     min(end_s / frame.length_s(count), 1.0),
     _aside(shapes, view, ended.places_m, resting_s),
@@ -105,6 +113,10 @@ def doubt(found: Reading, clear: float, limits: joint_config.Reading) -> str:
     return (
       f'what came for symbols were none: error {found.misfit:.2f} >'
       f' {limits.max_misfit}'
+    )
+  if found.worst > limits.max_worst:
+    return (
+      f'one symbol is no level: error {found.worst:.2f} > {limits.max_worst}'
     )
   if clear < limits.min_clear:
     return f'two words are as likely: clear {clear:.2f} < {limits.min_clear}'

@@ -321,3 +321,22 @@ def test_a_ladder_is_not_measured_and_compared_at_once(
   done = waggle('ladder', '--measure', '--validate', cwd=tmp_path)
   assert done.returncode == 2
   assert '`measure` and `validate`' in done.stderr
+
+
+@pytest.mark.parametrize(
+  ('control', 'seed', 'payload', 'distance_m', 'dropped_share'),
+  [
+    ('repeated', 3611760087, '010100', 0.6, 0.0),
+    ('repeated', 4026767841, '110010', 2.0, 0.0),
+    ('start_repeated', 3538090164, '000101', 2.0, 0.3),
+    ('begun_anew', 2770043873, '001000', 2.0, 0.3),
+  ],
+)
+def test_a_word_with_one_wrong_level_is_not_mended(
+  control: str, seed: int, payload: str, distance_m: float, dropped_share: float
+) -> None:
+  # Each is one level beside a word of the code, which a wander could explain.
+  assert read(
+    control=control, seed=seed, payload=payload, distance_m=distance_m,
+    dropped_share=dropped_share,
+  ) == [None]  # fmt: skip
