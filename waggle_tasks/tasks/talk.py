@@ -8,8 +8,6 @@ from collections.abc import Mapping, Sequence
 import dataclasses
 
 from dm_control import mjcf
-from dm_control.composer.observation import observable
-from dm_env import specs
 import numpy as np
 
 from waggle_tasks.arenas import flight_room, layouts
@@ -18,18 +16,15 @@ from waggle_tasks.protocol import agreement as agreement_lib
 from waggle_tasks.protocol import reference
 from waggle_tasks.tasks import (
   actions,
-  contacts,
-  copies,
   episode_clock,
   fleet,
   safety,
-  steps,
+  seeing,
   switches,
 )
 from waggle_tasks.tasks import air as air_lib
 from waggle_tasks.tasks import drift as drift_lib
 
-OBSERVATIONS = ('camera', 'time_s', 'position_m')
 # How far a reference may be from the place that is held, aside, and beyond the
 # highest and lowest level.
 _ASIDE_M, _BEYOND_M = 0.005, 0.02
@@ -62,7 +57,7 @@ class TalkParts:
   estimator: str = 'none'
 
 
-class Talk(copies.Uncopied, steps.Framed):
+class Talk(seeing.Seeing):
   """Vehicles of which each sees, dances and flies as its agent says.
 
   Observations are a list of dicts, one for each member: `camera` (H, W, 3)
@@ -86,52 +81,11 @@ class Talk(copies.Uncopied, steps.Framed):
       parts: What the task is made of.
     """
     self._parts = parts
-    self._members = {m.mjcf_model.model: m for m in parts.members}
-    self._fleet = fleet.Fleet(
-      parts.room, self._members, parts.poses, parts.dynamics,
-      parts.agreement.frame_s,
-    )  # fmt: skip
-    for visible in self.observables:
-      for name in OBSERVATIONS:
-        visible[name].enabled = True
-    self.set_timesteps(self.agreement.frame_s, 1 / agreement_lib.STEPS_HZ)
-
-  @property
-  def agreement(self) -> agreement_lib.Agreement:
-    """What all know."""
-    return self._parts.agreement
-
-  @property
-  def root_entity(self) -> flight_room.FlightRoom:
-    """The arena."""
-    return self._parts.room
-
-  @property
-  def fleet(self) -> fleet.Fleet:
-    """The vehicles."""
-    return self._fleet
-
-  @property
-  def observers(self) -> tuple[observer.Observer, ...]:
-    """All vehicles, in the order of observations and actions."""
-    return tuple(self._members.values())
-
-  @property
-  def observables(self) -> list[dict[str, observable.Observable]]:
-    """For each member what it may see; those of `OBSERVATIONS` are on."""
-    everything = [
-      each.observables.as_dict(fully_qualified=False)
-      for each in self._members.values()
-    ]
-    usual = [{name: all_[name] for name in OBSERVATIONS} for all_ in everything]
-    return [{**a, **b} for a, b in zip(usual, everything, strict=True)]
-
-  def after_compile(
-    self, physics: mjcf.Physics, random_state: np.random.RandomState
-  ) -> None:
-    """Finds the vehicles' joints and actuators in the compiled model."""
-    del random_state
-    self._fleet.after_compile(physics)
+    members = {m.mjcf_model.model: m for m in parts.members}
+    vehicles = fleet.Fleet(
+      parts.room, members, parts.poses, parts.dynamics, parts.agreement.frame_s
+    )
+    super().__init__(parts.room, parts.agreement, members, vehicles)
 
   def initialize_episode(
     self, physics: mjcf.Physics, random_state: np.random.RandomState
@@ -152,19 +106,11 @@ class Talk(copies.Uncopied, steps.Framed):
       }
     )
     self._fleet.begin(physics, self._parts, random_state)
-    self._clock = episode_clock.EpisodeClock(physics, self.agreement)
-    self._tell()
+    self._begin(physics)
     self._gates = {
       name: safety.Gate(name, reference.Reference.hover(place_m))
       for name, place_m in self._fleet.positions_m(physics).items()
     }
-    self._contacts: tuple[tuple[str, str], ...] = ()
-
-  def _tell(self) -> None:
-    """Lets members know what they take for their places."""
-    errors_m = self._fleet.errors_m(self._clock.time_s)
-    for name, each in self._members.items():
-      each.error_m = errors_m[name]
 
   def before_step(
     self,
@@ -178,14 +124,13 @@ class Talk(copies.Uncopied, steps.Framed):
       ActionError: if the action is not one finite reference per member.
       StepError: if the physics was set to another time.
     """
-    del random_state
-    self._touched = set[tuple[str, str]]()
+    super().before_step(physics, action, random_state)
     if self._clock.was_set(physics):
       raise episode_clock.StepError(
         '`time` must not be set in a conversation, as members go on by their'
         ' own clocks: `reset` and play the actions again'
       )
-    wanted = actions.read(action, [*self._members])
+    wanted = actions.read(action, [*self._seeing])
     for gate, each in zip(self._gates.values(), wanted, strict=True):
       self._judge(physics, gate, each)
       followed = gate.follow(each, self._clock.time_s)
@@ -227,42 +172,6 @@ class Talk(copies.Uncopied, steps.Framed):
     aside = bool((np.abs(off_m[:2]) <= _ASIDE_M).all())
     return aside and low_m - _BEYOND_M <= off_m[2] <= high_m + _BEYOND_M
 
-  def before_substep(
-    self,
-    physics: mjcf.Physics,
-    action: Sequence[np.ndarray],
-    random_state: np.random.RandomState,
-  ) -> None:
-    """Flies on, with dynamics that ask for it."""
-    del action, random_state
-    self._fleet.before_substep(physics)
-
-  def after_substep(
-    self, physics: mjcf.Physics, random_state: np.random.RandomState
-  ) -> None:
-    """Notices who touches, however short."""
-    del random_state
-    if physics.data.ncon:
-      self._touched |= contacts.find(physics)
-
-  def after_step(
-    self, physics: mjcf.Physics, random_state: np.random.RandomState
-  ) -> None:
-    """Takes stock of the step."""
-    del random_state
-    self._clock.tick(physics)
-    self._tell()
-    self._contacts = tuple(sorted(self._touched))
-
-  def positions_m(self, physics: mjcf.Physics) -> dict[str, np.ndarray]:
-    """True position of every vehicle, (3,) world metres, by its name."""
-    return self._fleet.positions_m(physics)
-
-  @property
-  def contacts(self) -> tuple[tuple[str, str], ...]:
-    """Pairs of names that touched in the last step; 'room' is the arena."""
-    return self._contacts
-
   @property
   def refusals(self) -> tuple[safety.Refusal, ...]:
     """The flights that the safety checks refused in this episode."""
@@ -272,24 +181,10 @@ class Talk(copies.Uncopied, steps.Framed):
     """One reward for each member, see the class."""
     del physics
     touched = {name for pair in self._contacts for name in pair}
-    return [-1.0 if name in touched else 0.0 for name in self._members]
-
-  def get_discount(self, physics: mjcf.Physics) -> float:
-    """0 on contact, otherwise 1."""
-    del physics
-    return 0.0 if self._contacts else 1.0
+    return [-1.0 if name in touched else 0.0 for name in self._seeing]
 
   def should_terminate_episode(self, physics: mjcf.Physics) -> bool:
     """Whether this was the last step, see the class."""
     del physics
     last = self.agreement.frames(self._parts.duration_s)
     return bool(self._contacts) or self._clock.frame >= last
-
-  def action_spec(self, physics: mjcf.Physics) -> list[specs.BoundedArray]:
-    """One reference for each member: (13,) float64, bounded."""
-    del physics
-    return actions.specification([*self._members])
-
-  def get_reward_spec(self) -> list[specs.Array]:
-    """One float for each member."""
-    return [specs.Array((), float, name=name) for name in self._members]
