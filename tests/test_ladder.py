@@ -146,7 +146,8 @@ def test_what_is_no_message_is_read_of_no_track(control: str) -> None:
   ('values', 'named'),
   [
     ({'dynamics': 'rotors'}, '`dynamics` must be'),
-    ({'occluder_every_s': 5.0}, '`surroundings` must be'),
+    ({'occluder_every_s': 5.0}, '`occluder_every_s` must be 0.0'),
+    ({'eye': 'phone'}, "`eye` must be 'ideal' .* got 'phone'"),
     ({'photons': 100.0}, '`photons` must be 0.0'),
     ({'blackout_length_s': 1.0, 'blackout_share': 0.5}, '`blackout_share`'),
     ({'performer_hover': 'mocap'}, '`observer_hover`'),

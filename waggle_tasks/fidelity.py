@@ -45,13 +45,19 @@ def check(scene: 'scenario.Scenario') -> None:
     return
   for field in dataclasses.fields(scene):
     value = getattr(scene, field.name)
-    if field.name in _PARTS:
-      for part in dataclasses.fields(value):
-        if part.name not in _PARTS[field.name]:
-          given = getattr(value, part.name)
-          _check_usual(scene, part.name, given, part.default)
-    elif field.name not in _FREE:
+    if field.name in _FREE:
+      continue
+    if type(value) is not type(field.default) or not dataclasses.is_dataclass(
+      value
+    ):
       _check_usual(scene, field.name, value, field.default)
+      continue
+    for part in dataclasses.fields(value):
+      if part.name not in _PARTS.get(field.name, ()):
+        given, usual = (
+          getattr(each, part.name) for each in (value, field.default)
+        )
+        _check_usual(scene, part.name, given, usual)
   drift, hovers = scene.drift, ('none', 'mocap')
   if (
     drift.performer_hover != drift.observer_hover
