@@ -12,7 +12,7 @@ _SHARE = 0.4
 # another way wherever it is.
 _OF_EVENTS = {
   JOINT: (
-    'min_contrast=0,lost_share=0.1,most_share=6,most_wider=0,most_higher=0'
+    'min_contrast=0,lost_share=0.3,most_share=6,most_wider=0,most_higher=0'
   ),
   'view_bank': 'min_contrast=0',
 }

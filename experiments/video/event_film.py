@@ -23,7 +23,7 @@ from waggle_tasks.experiments.video import sources
 SUFFIX = '.aedat4'
 FPS = 25.0  # Pictures a second, if nobody says: those of the paper's camera.
 EXTRA = "pip install 'waggle-tasks[events]'"
-_GREY, _LEVELS = 128, 32  # At first, and of an event...
+_GREY, _LEVELS = 128, 20  # At first, and of an event...
 _SHARED_PX = 1.0  # ...that is shared out so far.
 _MOST_S = 1e6  # A longer step of time is none of a recording.
 _US = 1e-6
