@@ -102,6 +102,18 @@ def test_a_hover_is_no_command(gate: safety.Gate, offset_m: float) -> None:
   assert gate.request(hover, HOME_M, 1.0) is None
 
 
+def test_a_command_to_where_it_is_lets_it_go_nowhere_else(
+  gate: safety.Gate,
+) -> None:
+  aside_m = from_home(0, 0.02, 0)  # Where the wind has blown it.
+  plan = gate.request(towards(aside_m, aside_m), aside_m, 1.0)
+  gate.judge(plan, None)
+  gate.follow(towards(aside_m, aside_m), 1.1)
+  assert gate.refusal is None
+  gate.follow(towards(aside_m, from_home(0, 0.2, 0)), 1.2)
+  assert 'from its way' in gate.refusal.reason
+
+
 def test_a_refused_gate_holds_and_is_not_judged_again(
   gate: safety.Gate,
 ) -> None:

@@ -235,7 +235,8 @@ def _astray(plan: flight.Flight, wanted: reference.Reference) -> str | None:
     return 'one command was already accepted in this episode'
   way = plan.goal_m - plan.begin_m
   offset = wanted.position_m - plan.begin_m
-  along = np.clip(offset @ way / (way @ way), 0.0, 1.0)
+  # A way that leads nowhere has no length.
+  along = np.clip(offset @ way / max(way @ way, 1e-12), 0.0, 1.0)
   aside_m = np.linalg.norm(offset - along * way)
   if aside_m > _CORRIDOR_M:
     return (
