@@ -21,6 +21,7 @@ from waggle_tasks.protocol import gestures, timing
 Scenario, Agreement = waggle_tasks.Scenario, waggle_tasks.Agreement
 
 
+@pytest.mark.slow
 def test_another_camera_at_another_rate_and_height_is_read_and_flown(
   short: dict[str, object],
 ) -> None:
@@ -51,6 +52,7 @@ def test_another_camera_at_another_rate_and_height_is_read_and_flown(
   np.testing.assert_allclose(place_m, [0.0, -0.9, 1.6], atol=0.002)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('rate_hz', [12.5, 125])
 def test_a_message_is_flown_to_the_agreed_height_at_any_rate(
   load: Callable[..., registry.composer.Environment], rate_hz: float

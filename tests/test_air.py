@@ -119,6 +119,7 @@ def test_a_jet_is_below_its_vehicle_and_grows_weaker_and_wider() -> None:
   assert sinks[2] < 0.01 * sinks[1]
 
 
+@pytest.mark.slow
 def test_who_hovers_below_another_needs_more_thrust_and_stays(
   load: Load,
 ) -> None:
@@ -145,6 +146,7 @@ def test_who_hovers_below_another_needs_more_thrust_and_stays(
   )
 
 
+@pytest.mark.slow
 def test_gusts_are_those_of_the_seed_and_move_everybody(load: Load) -> None:
   flown = {}
   for seed in (1, 1, 2):

@@ -58,6 +58,7 @@ def test_a_swaying_picture_is_brought_back(
   assert np.quantile(wrong, 0.9) <= 4 + 1.2 * sigma
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('sigma', [0.0, 10.0])
 @pytest.mark.parametrize('degrees', [0.1, 0.3, 1.0])
 def test_a_camera_that_turns_to_and_fro_is_brought_back(
@@ -84,6 +85,7 @@ def test_light_is_taken_out(gain: float, offset: float) -> None:
   assert np.quantile(wrong, 0.99) <= 3
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('sigma', [0.0, 5.0, 20.0])
 def test_a_picture_of_a_resting_camera_is_left_alone(sigma: float) -> None:
   image = scene()

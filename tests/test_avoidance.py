@@ -100,6 +100,7 @@ CASES = {
 }  # fmt: skip
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('name', CASES)
 def test_all_arrive_and_nobody_comes_too_near(name: str) -> None:
   begins_m, goals_m, stayers_m = CASES[name]

@@ -249,6 +249,7 @@ def test_a_stage_that_raises_has_ended() -> None:
   assert timer.seconds['failing'] == 1
 
 
+@pytest.mark.slow
 def test_timing_a_broadcast_leaves_every_call_as_it_was() -> None:
   def calls() -> list[object]:
     return [vars(each.owner).get(each.name) for each in stages.STAGES]
@@ -273,12 +274,14 @@ def test_a_loop_counts_steps_and_not_what_is_around_them() -> None:
   assert loop.whole_s > 0.0
 
 
+@pytest.mark.slow
 def test_peak_memory_never_falls() -> None:
   scene = registry.find('broadcast', observers=1, duration_s=FRAME_S)
   peaks_mb = loops.peaks_mb(scene, 2)
   assert 50.0 < peaks_mb[0] <= peaks_mb[1] < 10_000.0
 
 
+@pytest.mark.slow
 def test_the_flight_that_cameras_draw_is_danced_read_and_flown(
   short: dict[str, object],
 ) -> None:
@@ -292,6 +295,7 @@ def test_the_flight_that_cameras_draw_is_danced_read_and_flown(
   )
 
 
+@pytest.mark.slow
 def test_every_camera_draws_the_flight() -> None:
   scene = registry.find('broadcast', observers=2, duration_s=4 * FRAME_S)
   found = cameras.measure(scene, 1, itertools.count().__next__)
@@ -320,6 +324,7 @@ def test_event_logs_differ_at_their_first_unequal_line(
   assert events.difference(one, other) == pair
 
 
+@pytest.mark.slow
 def test_either_camera_gives_the_same_events(
   capsys: pytest.CaptureFixture[str],
 ) -> None:
@@ -344,6 +349,7 @@ def test_unequal_event_logs_are_shown() -> None:
   ]
 
 
+@pytest.mark.slow
 def test_the_command_prints_a_report_and_leaves_json(
   waggle: Waggle, tmp_path: pathlib.Path
 ) -> None:

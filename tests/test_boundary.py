@@ -29,7 +29,7 @@ def run(
   return boundary_worlds.experiment(scene, other, name, SWAP)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_events_of_the_klt_receiver_come_from_its_own_images(
   short: dict[str, object],
 ) -> None:
@@ -112,6 +112,7 @@ def leaky(
   return experiment
 
 
+@pytest.mark.slow
 def test_receivers_that_know_their_own_images_pass(
   leaky: Callable[[type[Leak]], tuple[boundary_worlds.Events, ...]],
 ) -> None:
@@ -121,6 +122,7 @@ def test_receivers_that_know_their_own_images_pass(
   assert swapped == own[::-1]
 
 
+@pytest.mark.slow
 def test_a_receiver_that_sees_its_neighbours_image_is_found(
   leaky: Callable[[type[Leak]], tuple[boundary_worlds.Events, ...]],
 ) -> None:
@@ -129,6 +131,7 @@ def test_a_receiver_that_sees_its_neighbours_image_is_found(
   assert foreign[1] != own[1]
 
 
+@pytest.mark.slow
 def test_a_receiver_that_is_told_where_it_is_is_found(
   leaky: Callable[[type[Leak]], tuple[boundary_worlds.Events, ...]],
   monkeypatch: pytest.MonkeyPatch,
@@ -148,6 +151,7 @@ def test_a_receiver_that_is_told_where_it_is_is_found(
   assert swapped != own[::-1]
 
 
+@pytest.mark.slow
 def test_a_receiver_that_knows_which_one_it_is_is_found(
   leaky: Callable[[type[Leak]], tuple[boundary_worlds.Events, ...]],
 ) -> None:
@@ -200,6 +204,7 @@ def answers() -> dict[str, tuple[int, str, str]]:
   return dict(zip(LINES, json.loads(done.stdout), strict=True))
 
 
+@pytest.mark.slow
 def test_the_launcher_shows_both_experiments(
   answers: dict[str, tuple[int, str, str]],
 ) -> None:
@@ -218,6 +223,7 @@ def test_the_launcher_shows_both_experiments(
   assert verdict == 'The boundary holds.'
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
   ('line', 'error'),
   zip(

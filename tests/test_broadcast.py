@@ -52,6 +52,7 @@ def flown(run: Run) -> archive.Run:
   return archive.load(run.folder)
 
 
+@pytest.mark.slow
 def test_it_passes_and_says_so(run: Run) -> None:
   assert run.child.returncode == 0, run.child.stderr
   lines = run.child.stdout.splitlines()
@@ -66,6 +67,7 @@ def test_it_passes_and_says_so(run: Run) -> None:
   assert 's simulated' in run.child.stderr  # The progress bar.
 
 
+@pytest.mark.slow
 def test_it_keeps_the_times_of_the_paper(run: Run) -> None:
   result = run.json('result.json')
   assert (result['passed'], result['correct']) == (True, 3)
@@ -81,6 +83,7 @@ def test_it_keeps_the_times_of_the_paper(run: Run) -> None:
     assert each['failures'] == []
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('name', OBSERVERS)
 def test_each_log_tells_a_whole_frame_then_a_start_and_an_arrival(
   name: str, run: Run
@@ -99,6 +102,7 @@ def test_each_log_tells_a_whole_frame_then_a_start_and_an_arrival(
   assert times_s == sorted(times_s)
 
 
+@pytest.mark.slow
 def test_every_motion_was_accepted_by_the_papers_limits(run: Run) -> None:
   for name in OBSERVERS:
     scores = [each.get('recognition') for each in run.events(name)]
@@ -112,11 +116,13 @@ def test_every_motion_was_accepted_by_the_papers_limits(run: Run) -> None:
       assert each['span_px'] >= 28
 
 
+@pytest.mark.slow
 def test_three_observers_read_images_of_their_own(run: Run) -> None:
   chains = {run.events(name)[17]['provenance'] for name in OBSERVERS}
   assert len(chains) == 3
 
 
+@pytest.mark.slow
 def test_the_run_folder_holds_everything_and_nothing_is_beside_it(
   run: Run,
 ) -> None:
@@ -137,6 +143,7 @@ def test_the_run_folder_holds_everything_and_nothing_is_beside_it(
   assert 'waggle_tasks.agents.klt' in origin['sources']
 
 
+@pytest.mark.slow
 def test_everybody_moved_by_the_message_and_not_before_its_own_null(
   flown: archive.Run,
 ) -> None:
@@ -149,6 +156,7 @@ def test_everybody_moved_by_the_message_and_not_before_its_own_null(
     np.testing.assert_allclose(positions_m[:, 2], 1.3, atol=1e-3)
 
 
+@pytest.mark.slow
 def test_who_arrived_keeps_its_place(flown: archive.Run) -> None:
   for outcome in flown.result.outcomes:
     positions_m = flown.positions_m[outcome.observer]
@@ -158,6 +166,7 @@ def test_who_arrived_keeps_its_place(flown: archive.Run) -> None:
     assert apart_m.max() < flight.ARRIVAL_ERROR_M
 
 
+@pytest.mark.slow
 def test_nobody_came_near_another(flown: archive.Run) -> None:
   places_m = [*flown.positions_m.values()]
   for one, other in itertools.combinations(places_m, 2):
@@ -174,6 +183,7 @@ SHORT_FLAGS = (
 )
 
 
+@pytest.mark.slow
 def test_flags_make_another_dance_and_every_process_the_same_bytes(
   waggle: Waggle, tmp_path: pathlib.Path, short: dict[str, object]
 ) -> None:

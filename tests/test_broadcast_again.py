@@ -32,6 +32,7 @@ def config(tmp_path: pathlib.Path) -> pathlib.Path:
   return path
 
 
+@pytest.mark.slow
 def test_a_run_is_flown_again_with_its_receiver(
   waggle: Waggle, config: pathlib.Path, tmp_path: pathlib.Path
 ) -> None:
@@ -43,6 +44,7 @@ def test_a_run_is_flown_again_with_its_receiver(
   assert json.loads(again.read_text()) == json.loads(config.read_text())
 
 
+@pytest.mark.slow
 def test_flags_beside_it_change_what_it_says(
   waggle: Waggle, config: pathlib.Path, tmp_path: pathlib.Path
 ) -> None:
@@ -80,6 +82,7 @@ def test_a_scenario_that_cannot_be_made_is_told_with_its_field(
     archive.read_scenario(config)
 
 
+@pytest.mark.slow
 def test_a_config_that_is_not_there_is_named(waggle: Waggle) -> None:
   child = waggle('broadcast', '--config=nothing.json')
   assert child.returncode == 2

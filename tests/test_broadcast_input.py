@@ -147,6 +147,7 @@ def test_what_is_not_a_finite_number_is_refused(
 COMMAND = [sys.executable, '-m', 'waggle_tasks.experiments.main', 'broadcast']
 
 
+@pytest.mark.slow
 def test_help_shows_a_flag_for_every_choice(waggle: Waggle) -> None:
   child = waggle('broadcast', '--help')
   assert child.returncode == 0, child.stderr
@@ -160,6 +161,7 @@ def test_help_shows_a_flag_for_every_choice(waggle: Waggle) -> None:
   assert max(map(len, child.stdout.splitlines())) <= 80
 
 
+@pytest.mark.slow
 def test_a_machine_that_cannot_render_is_told_so_and_nothing_is_left(
   waggle: Waggle, tmp_path: pathlib.Path
 ) -> None:
@@ -175,12 +177,13 @@ def test_a_machine_that_cannot_render_is_told_so_and_nothing_is_left(
 BRIEF = ('--control=no_send', '--observers=1', '--duration_s=2')
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
   ('output', 'statuses', 'left'),
   [
     ((), [0, 0], ['broadcast-1', 'broadcast-2']),
     pytest.param(
-      ('--output=runs/mine',), [0, 2], ['mine'], marks=pytest.mark.slow
+      ('--output=runs/mine',), [0, 2], ['mine'], marks=pytest.mark.long
     ),
   ],
 )
@@ -209,12 +212,13 @@ def test_two_at_once_never_fly_for_the_same_folder(
       assert line.startswith('waggle broadcast: `output` must not ')
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
   ('number', 'status'),
   [
     (signal.SIGINT, 130),
-    pytest.param(signal.SIGTERM, None, marks=pytest.mark.slow),
-    pytest.param(signal.SIGHUP, None, marks=pytest.mark.slow),
+    pytest.param(signal.SIGTERM, None, marks=pytest.mark.long),
+    pytest.param(signal.SIGHUP, None, marks=pytest.mark.long),
   ],
 )
 def test_an_interrupted_run_leaves_no_half_written_file(

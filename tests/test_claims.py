@@ -138,6 +138,7 @@ SMALL = kinds.Claim(
 )  # fmt: skip
 
 
+@pytest.mark.slow
 def test_what_is_flown_again_is_set_beside_the_document() -> None:
   said = block(
     'distance_m \\ noise_sigma          0          5',

@@ -45,6 +45,7 @@ def test_a_burst_is_filled_over_all_blocks(
   assert code.read(seen, len(bits), size) == want
 
 
+@pytest.mark.slow
 @hypothesis.settings(max_examples=200)
 @hypothesis.given(st.data(), cases())
 def test_without_a_check_nothing_that_was_seen_is_changed(

@@ -33,6 +33,7 @@ def hard_to_read(share: float) -> ladder_table.Table:
   return ladder_table.Table('', 'swift', 'joint', '', '', (cell,))
 
 
+@pytest.mark.slow
 def test_equal_sites_are_a_deadlock_below_the_critical_stop_signal() -> None:
   value = 3.0
   critical = colony_limits.critical_stop(value)
@@ -96,6 +97,7 @@ def test_dances_that_are_hard_to_read_take_longer(model: str) -> None:
   assert steps[1] > 1.2 * steps[0]
 
 
+@pytest.mark.slow
 def test_frames_that_are_read_wrongly_keep_a_swarm_from_agreeing() -> None:
   swarm = dataclasses.replace(SWARM, vehicles=50, qualities=(1.0, 0.8))
   right, wrong = (
@@ -176,6 +178,7 @@ def here(jobs: list[pool.Job], most: int = 100) -> Any:  # noqa: ANN401
     yield pool.Done(job, job.do(lambda done_s: None))
 
 
+@pytest.mark.slow
 def test_a_study_that_was_ended_goes_on_to_the_same_bytes(
   tmp_path: pathlib.Path,
 ) -> None:
@@ -193,6 +196,7 @@ def test_a_study_that_was_ended_goes_on_to_the_same_bytes(
   assert len(done) == 2
 
 
+@pytest.mark.slow
 def test_the_command_leaves_a_table_a_picture_and_a_page(
   waggle: Waggle, tmp_path: pathlib.Path
 ) -> None:

@@ -28,7 +28,7 @@ def scripts(
   return out
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_the_command_knows_the_flags_of_all(waggle: Waggle) -> None:
   child = waggle('completion', 'bash')
   assert child.returncode == 0, child.stderr

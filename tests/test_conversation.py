@@ -100,6 +100,7 @@ def held(**changes: object) -> talk.Talk:
   return talking.hold(conversation.Conversation(**changes))
 
 
+@pytest.mark.slow
 def test_two_confirm_at_once_and_fly_what_they_were_told() -> None:
   found = held(payload='000011', listeners=2)
   assert found.passed
@@ -115,7 +116,7 @@ def test_two_confirm_at_once_and_fly_what_they_were_told() -> None:
   assert all(found.flew_s[1:])
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_who_saw_nothing_is_told_again() -> None:
   dark = sensor_lib.Sensor(blackout_s=2.0, blackout_length_s=4.0)
   found = held(listeners=1, sensor=dark)
@@ -123,7 +124,7 @@ def test_who_saw_nothing_is_told_again() -> None:
   assert found.diaries[0][-1].note == '1 of 1 confirmed after 2 tries'
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_two_dances_at_once_are_read_each_by_whom_it_is_for() -> None:
   found = held(**TURNS, together=True, seed=1)
   assert found.passed
@@ -133,7 +134,7 @@ def test_two_dances_at_once_are_read_each_by_whom_it_is_for() -> None:
   assert passes
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize(
   'changes',
   [
@@ -153,7 +154,7 @@ def test_all_are_told_and_nothing_wrong_is_read(changes: dict) -> None:
   assert len(found.confirmed) >= len(found.told)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_nobody_confirms_what_it_did_not_read() -> None:
   dark = sensor_lib.Sensor(blackout_length_s=600.0)
   found = held(listeners=3, sensor=dark, tries=2)
@@ -197,6 +198,7 @@ def test_confirmations_tell_more_with_fewer_dances_than_repetition() -> None:
   assert dances_s[False] < 0.7 * dances_s[True]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
   ('flags', 'text'),
   [
@@ -223,6 +225,7 @@ def test_the_command_counts(waggle: Waggle, tmp_path: pathlib.Path) -> None:
   assert 'delivered: 9/9 (100.00%)' in done.stdout
 
 
+@pytest.mark.slow
 def test_the_command_leaves_a_page_and_its_record(
   waggle: Waggle, tmp_path: pathlib.Path
 ) -> None:
@@ -242,6 +245,7 @@ def test_the_command_leaves_a_page_and_its_record(
   assert '`output` must not exist yet' in again.stderr
 
 
+@pytest.mark.slow
 def test_bad_input_is_one_line_and_leaves_nothing(
   waggle: Waggle, tmp_path: pathlib.Path
 ) -> None:

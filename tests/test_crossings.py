@@ -29,6 +29,7 @@ def test_vehicles_cross_in_mujoco_without_contact(
     assert 1.0 < each.last_s < crossing.LIMIT_S
 
 
+@pytest.mark.slow
 def test_a_crossing_is_that_of_its_seed_whatever_was_flown_before(
   flown: list[crossing.Crossing],
 ) -> None:
@@ -52,6 +53,7 @@ def test_who_touches_is_counted_as_a_pair(
   assert crossing.Airspace(2).fly(0).contacts == 1
 
 
+@pytest.mark.slow
 def test_a_table_has_a_line_for_each_number_of_vehicles(
   ask: Ask, tmp_path: pathlib.Path, flown: list[crossing.Crossing]
 ) -> None:
@@ -88,6 +90,7 @@ BAD = {
 }
 
 
+@pytest.mark.slow
 def test_bad_input_is_refused_in_one_line(
   ask: Ask, tmp_path: pathlib.Path
 ) -> None:

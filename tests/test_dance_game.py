@@ -70,6 +70,7 @@ def test_every_dance_can_be_flown() -> None:
   assert levels.least_s(2 * signals.REACH_M) == signals.STROKE_S
 
 
+@pytest.mark.slow
 def test_a_pair_learns_a_language_of_its_own() -> None:
   curve = learners.train(4, signals.Channel(2), QUICK, seed=0)
   assert curve.right[0] < 0.6
@@ -112,6 +113,7 @@ def test_bad_choices_are_refused(
     make()
 
 
+@pytest.mark.slow
 def test_the_command_keeps_curves_and_draws_them(
   waggle: Waggle, tmp_path: pathlib.Path
 ) -> None:
@@ -127,6 +129,7 @@ def test_the_command_keeps_curves_and_draws_them(
   assert (tmp_path / 'out' / 'dance.png').stat().st_size > 10_000
 
 
+@pytest.mark.slow
 def test_the_command_refuses_before_it_learns(waggle: Waggle) -> None:
   child = waggle('learn', '--strokes=2')
   assert child.returncode == 2

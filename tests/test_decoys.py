@@ -76,7 +76,7 @@ def test_each_seed_is_another_performance(name: str) -> None:
   [
     'random_walk',
     *(
-      pytest.param(name, marks=pytest.mark.slow)
+      pytest.param(name, marks=pytest.mark.long)
       for name in FIGURES
       if name != 'random_walk'
     ),
@@ -97,6 +97,7 @@ def test_figures_are_smooth_and_can_be_flown(name: str) -> None:
     assert np.abs(acceleration).max() < 3.0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('name', decoys.DECOYS)
 def test_decoys_stay_in_the_air_and_away_from_the_audience(name: str) -> None:
   """Observers may stand 0.6 m away in any direction."""

@@ -63,6 +63,7 @@ def test_a_machine_that_is_well_passes_every_check() -> None:
     assert words in report
 
 
+@pytest.mark.slow
 def test_a_broken_pair_does_not_hide_the_report() -> None:
   before = (
     'from importlib import metadata; version = metadata.version\n'
@@ -76,6 +77,7 @@ def test_a_broken_pair_does_not_hide_the_report() -> None:
   assert child.stdout.endswith('1 to mend\n')
 
 
+@pytest.mark.slow
 def test_a_broken_gl_stack_does_not_hide_the_rest_of_the_report() -> None:
   child = doctor(
     MUJOCO_GL='egl', __EGL_VENDOR_LIBRARY_FILENAMES='/no/such.json'
@@ -88,6 +90,7 @@ def test_a_broken_gl_stack_does_not_hide_the_rest_of_the_report() -> None:
   assert ' GB free in ' in child.stdout
 
 
+@pytest.mark.slow
 def test_a_file_cannot_hold_runs() -> None:
   child = doctor(f'--output={__file__}')
   assert child.returncode == 1
@@ -160,6 +163,7 @@ def test_two_packages_that_bring_one_module_are_named(
   assert both[2] == "'opencv-python-headless<6,>=5'"
 
 
+@pytest.mark.slow
 def test_nothing_flies_with_two_packages_of_one_module(
   installed: Callable[..., None], waggle: Callable[..., object]
 ) -> None:

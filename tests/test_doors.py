@@ -103,6 +103,7 @@ def test_sources_of_what_is_offered_count_in_the_identity_of_results(
     source.write_text(text)
 
 
+@pytest.mark.slow
 def test_a_command_takes_what_is_installed(
   waggle: Waggle, site: pathlib.Path, tmp_path: pathlib.Path
 ) -> None:

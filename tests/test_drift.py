@@ -41,6 +41,7 @@ def heading(environment: registry.composer.Environment, name: str) -> float:
   return float(np.arctan2(matrix[3], matrix[0]))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('time_s', [0.5, 1.0])
 def test_the_drift_that_is_flown_is_the_one_asked_for(
   time_s: float, load: Callable
@@ -66,6 +67,7 @@ def test_the_drift_that_is_flown_is_the_one_asked_for(
   assert rms_deg == pytest.approx(0.3, rel=0.15)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('time_s', [0.3, 1.0, 10.0])
 def test_the_controller_keeps_up_with_the_drift(
   time_s: float, load: Callable
@@ -86,6 +88,7 @@ def test_the_controller_keeps_up_with_the_drift(
   assert worst_m < 1e-3
 
 
+@pytest.mark.slow
 def test_each_vehicle_and_each_seed_drifts_its_own_way(load: Callable) -> None:
   flown = {}
   for seed in (1, 1, 2):
@@ -115,6 +118,7 @@ def test_without_drift_nothing_is_drawn() -> None:
   assert not np.any(wander.at(3.0))
 
 
+@pytest.mark.slow
 def test_a_drift_is_smooth_and_begins_at_rest() -> None:
   wander = drift.Drift(0.005).performer(np.random.RandomState(0))
   times_s = np.arange(0, 20, 0.001)
@@ -132,6 +136,7 @@ def test_a_drift_is_smooth_and_begins_at_rest() -> None:
   assert np.abs(second).max() < 0.1
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('seed', range(3))
 def test_a_drift_of_5_mm_is_no_motion_and_lets_flights_arrive(
   seed: int,

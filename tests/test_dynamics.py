@@ -61,6 +61,7 @@ def test_the_default_dance_is_flown_within_two_centimetres(load: Load) -> None:
   assert np.abs(np.diff(watching_m, axis=0)).max() < 1e-9
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
   'changes',
   [
@@ -167,6 +168,7 @@ def test_propellers_that_turn_are_the_same_in_every_picture() -> None:
     assert away_m[0] < crazyflie.ROTOR_RADIUS_M
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('observers', [1, 3])
 def test_pictures_in_parts_equal_full_ones_where_bodies_and_eyes_tilt(
   observers: int, load: Load

@@ -44,9 +44,9 @@ def check_all_flew(played: Played) -> None:
   ('payload', 'observers', 'layout'),
   [
     ('000110', 1, 'arc'),
-    pytest.param('001010', 2, 'line', marks=pytest.mark.slow),
-    pytest.param('100010', 2, 'arc', marks=pytest.mark.slow),
-    pytest.param('000010', 5, 'arc', marks=pytest.mark.slow),
+    pytest.param('001010', 2, 'line', marks=pytest.mark.long),
+    pytest.param('100010', 2, 'arc', marks=pytest.mark.long),
+    pytest.param('000010', 5, 'arc', marks=pytest.mark.long),
   ],
 )
 def test_a_short_dance_is_read_and_flown(
@@ -63,7 +63,7 @@ def test_a_short_dance_is_read_and_flown(
   )
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize('layout', ['arc', 'line'])
 @pytest.mark.parametrize('payload', PAYLOADS)
 @pytest.mark.parametrize('observers', [1, 2, 3, 4, 5])
@@ -75,7 +75,7 @@ def test_the_papers_payloads_for_any_number_in_either_layout(
   )
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize(
   ('changes', 'correct'),
   [
@@ -95,7 +95,7 @@ def test_the_papers_other_nominal_cases_that_passed(
   assert played[2].correct == correct
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize(
   ('changes', 'right'),
   [
@@ -127,6 +127,7 @@ def test_nothing_sent_is_one_null_and_nobody_moves() -> None:
   assert moved_m(rollout, 'performer') < 1e-3
 
 
+@pytest.mark.slow
 def test_who_sees_black_waits_and_the_others_fly(
   short: dict[str, object],
 ) -> None:
@@ -150,6 +151,7 @@ def check_nobody_moved(played: Played, duration_s: float) -> None:
     assert moved_m(rollout, each.observer) < 1e-3
 
 
+@pytest.mark.slow
 def test_a_dance_that_stops_at_26_s_moves_nobody_until_60_s() -> None:
   played = play('interrupted', observers=1)
   check_nobody_moved(played, 60.0)
@@ -160,6 +162,7 @@ def test_a_dance_that_stops_at_26_s_moves_nobody_until_60_s() -> None:
     ]  # fmt: skip
 
 
+@pytest.mark.slow
 def test_a_dance_that_stops_within_its_end_moves_nobody(
   short: dict[str, object],
 ) -> None:

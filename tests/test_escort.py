@@ -110,6 +110,7 @@ def test_a_message_that_leads_through_the_performer_is_refused_as_ever(
   np.testing.assert_allclose(told.places_m[-1, 1], (0, -0.6, 1.3), atol=1e-4)
 
 
+@pytest.mark.slow
 def test_or_leads_to_the_nearest_place_beside_it(
   flown: Callable[..., Told],
 ) -> None:
@@ -124,6 +125,7 @@ BEHIND = {
 }  # fmt: skip
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
   'fields',
   [
@@ -146,11 +148,13 @@ def test_a_message_through_the_performer_leads_round_it(
   assert stayed_m.max() < (0.05 if 'estimator' in fields else 2e-3)
 
 
+@pytest.mark.slow
 def test_it_is_flown_in_the_same_way_again(flown: Callable[..., Told]) -> None:
   one, other = (flown(**BEHIND) for _ in range(2))
   np.testing.assert_array_equal(one.places_m, other.places_m)
 
 
+@pytest.mark.slow
 def test_who_has_nobody_in_the_way_flies_as_with_refuse(
   flown: Callable[..., Told],
 ) -> None:
@@ -165,6 +169,7 @@ def test_who_has_nobody_in_the_way_flies_as_with_refuse(
 PLACE = {'units': payload.Units(meaning='place'), 'observers': 5}
 
 
+@pytest.mark.slow
 def test_a_place_has_a_slot_for_everybody(flown: Callable[..., Told]) -> None:
   told = flown(**PLACE, payload='000010', safety='avoid')
   assert told.rewards == [1.0] * 5
@@ -180,6 +185,7 @@ def test_an_unknown_safety_is_refused() -> None:
     scenario.Scenario(safety='hope')
 
 
+@pytest.mark.slow
 def test_who_has_not_read_is_flown_round_and_not_moved(load: Load) -> None:
   """It is where its neighbour's way leads through."""
   fields = {
@@ -206,6 +212,7 @@ def test_who_has_not_read_is_flown_round_and_not_moved(load: Load) -> None:
   assert rewards.tolist() == [1, 0]
 
 
+@pytest.mark.slow
 def test_nobody_flies_into_a_dance_that_goes_on(load: Load) -> None:
   """Who has read the first round waits for the end of the second."""
   fields = {
@@ -233,6 +240,7 @@ def test_nobody_flies_into_a_dance_that_goes_on(load: Load) -> None:
   assert rewards == 1
 
 
+@pytest.mark.slow
 def test_data_have_no_slots_and_move_nobody(load: Load) -> None:
   units = payload.Units(meaning='place', slot_m=0.2)
   environment = load(
@@ -255,6 +263,7 @@ def test_data_have_no_slots_and_move_nobody(load: Load) -> None:
 HOVER = drift.Drift(performer_hover='mocap', observer_hover='mocap')
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('seed', range(4))
 def test_a_place_beside_the_performer_is_found_while_all_hover(
   seed: int, flown: Callable[..., Told]
@@ -269,8 +278,9 @@ def test_a_place_beside_the_performer_is_found_while_all_hover(
   assert told.least_m() > safety.MINIMUM_SPACING_M
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
-  'estimator', ['mocap', pytest.param('flow_deck', marks=pytest.mark.slow)]
+  'estimator', ['mocap', pytest.param('flow_deck', marks=pytest.mark.long)]
 )
 def test_errors_and_hover_widen_what_is_kept(
   estimator: str, flown: Callable[..., Told]

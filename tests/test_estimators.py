@@ -70,6 +70,7 @@ def watch(load: Load) -> Callable[..., Watch]:
   return run
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('estimator', MEASURED)
 def test_hover_wanders_as_was_measured(
   estimator: str, watch: Callable[..., Watch]
@@ -82,6 +83,7 @@ def test_hover_wanders_as_was_measured(
   assert speed[0] < rms(1e3 * seen.speeds_mps[75:]) < speed[1]
 
 
+@pytest.mark.slow
 def test_headings_are_held_by_what_shows_them(
   watch: Callable[..., Watch],
 ) -> None:
@@ -98,6 +100,7 @@ def test_headings_are_held_by_what_shows_them(
   assert math.degrees(rms(errors.errors(100.0)[2][:, 2])) > 0.8
 
 
+@pytest.mark.slow
 def test_an_observation_tells_the_estimate_and_not_the_truth(
   watch: Callable[..., Watch],
 ) -> None:
@@ -111,6 +114,7 @@ def test_an_observation_tells_the_estimate_and_not_the_truth(
   np.testing.assert_array_equal(exact.told_m, exact.places_m[:, 1:])
 
 
+@pytest.mark.slow
 def test_each_vehicle_and_each_seed_errs_its_own_way(
   watch: Callable[..., Watch],
 ) -> None:

@@ -26,7 +26,7 @@ def test_a_message_is_read_and_flown() -> None:
   assert outcome.decoded == '011010'
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_the_papers_dance_is_read_one_gesture_after_another() -> None:
   outcome, events = fly(payload='101101')
   assert not outcome.failures
@@ -41,6 +41,7 @@ def test_a_decoy_is_no_message_and_nobody_moves() -> None:
   assert not outcome.failures
 
 
+@pytest.mark.slow
 def test_the_same_images_give_the_same_events() -> None:
   scene = scenario.Scenario(language='swift', observers=1)
   (seen,) = tape.record(scene, lambda done_s: None)

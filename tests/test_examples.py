@@ -26,10 +26,11 @@ def test_every_example_is_here_and_short() -> None:
   assert max(lengths.values()) < 40
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
   'name',
   [
-    pytest.param(name, marks=[pytest.mark.slow] * (name in LONG))
+    pytest.param(name, marks=[pytest.mark.long] * (name in LONG))
     for name in READ
   ],
 )
@@ -47,6 +48,7 @@ def test_an_example_reads_what_is_danced(
   ]
 
 
+@pytest.mark.slow
 def test_learning_libraries_tell_who_was_right(
   monkeypatch: pytest.MonkeyPatch,
 ) -> None:

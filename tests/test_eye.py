@@ -24,6 +24,7 @@ def test_there_is_one_new_image_every_0_04_s(dancing: Load, film: Film) -> None:
     assert all((a != b).any() for a, b in itertools.pairwise(later))
 
 
+@pytest.mark.slow
 def test_an_image_that_is_kept_does_not_change(
   dancing: Load, episode: Fixture, hover: Fixture
 ) -> None:
@@ -34,6 +35,7 @@ def test_an_image_that_is_kept_does_not_change(
   np.testing.assert_array_equal(np.stack(kept), np.stack(copies))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('choice', [{'buffer_size': 3}, {'delay': 20}])
 def test_images_that_composer_keeps_are_those_of_their_time(
   choice: dict[str, int], dancing: Load, film: Film
@@ -49,12 +51,14 @@ def test_images_that_composer_keeps_are_those_of_their_time(
       np.testing.assert_array_equal(kept[index], images[index - 2 : index + 1])
 
 
+@pytest.mark.slow
 def test_both_cameras_give_the_same_picture(dancing: Load, film: Film) -> None:
   np.testing.assert_array_equal(
     film(dancing(camera='incremental')), film(dancing(camera='full'))
   )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('observers', [1, 3])
 def test_the_performance_area_is_in_the_middle_of_each_image(
   observers: int, load: Load
@@ -95,6 +99,7 @@ def test_the_eye_is_a_pinhole_of_60_degrees(
   assert middle == pytest.approx(expected, abs=6)
 
 
+@pytest.mark.slow
 def test_observers_never_see_shadows(load: Load) -> None:
   images = [
     load(
@@ -107,6 +112,7 @@ def test_observers_never_see_shadows(load: Load) -> None:
   np.testing.assert_array_equal(*images)
 
 
+@pytest.mark.slow
 def test_environments_side_by_side_do_not_meet(
   dancing: Load, film: Film, hover: Fixture
 ) -> None:
@@ -124,6 +130,7 @@ def test_environments_side_by_side_do_not_meet(
     ]
 
 
+@pytest.mark.slow
 def test_a_model_that_is_compiled_anew_is_seen_anew(
   dancing: Load, film: Film
 ) -> None:

@@ -103,12 +103,13 @@ def shots(scene: scenario.Scenario, count: int = 3) -> np.ndarray:
   return np.array(out)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
   'name',
   [
     'ai_deck',
     *(
-      pytest.param(n, marks=pytest.mark.slow)
+      pytest.param(n, marks=pytest.mark.long)
       for n in ('fpv', 'phone', 'webcam')
     ),
   ],
@@ -124,6 +125,7 @@ def test_pictures_are_of_the_camera_s_size_and_follow_from_the_seed(
   assert (other != first).any()
 
 
+@pytest.mark.slow
 def test_the_middle_of_a_bent_picture_is_that_of_a_pinhole_s() -> None:
   bent = eyes.Eye(lens='brown', k1=-0.1, k2=0.02)
   scene = scenario.Scenario(observers=1, eye=bent, **SMALL)
@@ -138,6 +140,7 @@ def test_the_middle_of_a_bent_picture_is_that_of_a_pinhole_s() -> None:
   assert np.abs(one - other).mean() < 1.0
 
 
+@pytest.mark.slow
 def test_a_camera_that_looks_up_sees_the_dancer_below_its_middle() -> None:
   level = scenario.Scenario(observers=1, **SMALL)
   up = dataclasses.replace(level, eye=eyes.Eye(pitch_deg=5.0))

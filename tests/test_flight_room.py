@@ -115,6 +115,7 @@ def without_performer(
   return present, physics.render(height=480, width=640, camera_id='top')
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('shadows', [False, True])
 def test_a_vehicle_changes_the_floor_only_by_a_shadow(shadows: bool) -> None:
   poses = layouts.Arc().poses(3)
@@ -135,6 +136,7 @@ def test_no_light_casts_a_shadow_by_default(physics: mjcf.Physics) -> None:
   assert not physics.model.light_castshadow.any()
 
 
+@pytest.mark.slow
 def test_an_empty_floor_has_no_tiles() -> None:
   pictures = {
     floor: compiled(flight_room.FlightRoom(Appearance(floor=floor))).render(

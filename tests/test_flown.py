@@ -53,6 +53,7 @@ def test_damaged_flights_are_refused_by_name(
     flown.load(path)
 
 
+@pytest.mark.slow
 def test_a_run_with_rotors_shows_what_they_did(
   waggle: Waggle, tmp_path: pathlib.Path
 ) -> None:

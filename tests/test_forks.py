@@ -45,6 +45,7 @@ def forked(parent: str, child: str) -> list[str]:
   return done.stdout.splitlines()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
   ('parent', 'child'),
   [
@@ -62,5 +63,6 @@ def test_a_fork_after_drawing_is_an_error_that_says_how_to_start_it(
   assert ended == '0'
 
 
+@pytest.mark.slow
 def test_a_fork_before_drawing_draws() -> None:
   assert forked('import dm_control', ANEW) == ['drew', '0']

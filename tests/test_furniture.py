@@ -27,6 +27,7 @@ def seen(load: Callable) -> Seen:
   return look
 
 
+@pytest.mark.slow
 def test_a_number_makes_a_room_and_another_one_another(seen: Seen) -> None:
   bare, one, again, other = map(seen, (0, 1, 1, 2))
   np.testing.assert_array_equal(one, again)
@@ -35,6 +36,7 @@ def test_a_number_makes_a_room_and_another_one_another(seen: Seen) -> None:
   assert np.count_nonzero((one != other).any(axis=2)) > 10_000
 
 
+@pytest.mark.slow
 def test_windows_are_as_bright_as_white(seen: Seen) -> None:
   # In the first room they are before the observer; the bare one has none.
   assert np.count_nonzero(seen(1).min(axis=2) > 215) > 1_000
@@ -77,6 +79,7 @@ class At:
     return (layouts.Pose(self.place_m, 0.0),) * count
 
 
+@pytest.mark.slow
 def test_who_touches_a_thing_touches_the_room(load: Callable) -> None:
   inside_m = boxes_m(load, 1)['thing_0_0']
   environment = load(

@@ -39,9 +39,10 @@ def test_it_is_flown_by_all_vehicles_and_takes_at_most_30_s() -> None:
   assert {*measured.refusals.values()} == {''}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
   ('distance_m', 'bearing_deg'),
-  [(3.0, 75.0), pytest.param(0.6, 0.0, marks=pytest.mark.slow)],
+  [(3.0, 75.0), pytest.param(0.6, 0.0, marks=pytest.mark.long)],
 )
 def test_it_is_read_when_rotors_fly_it(
   distance_m: float, bearing_deg: float

@@ -103,6 +103,7 @@ def test_nobody_is_sent_to_a_library_that_their_system_has_not(
   assert gl.mend(environ, 'gladLoadGL error', 'darwin') == line
 
 
+@pytest.mark.slow
 def test_a_machine_that_renders_has_no_problem() -> None:
   assert gl.problem() is None
 
@@ -148,6 +149,7 @@ def test_a_renderer_that_draws_in_a_thread_of_its_own_has_its_name(
   offloading.terminate()
 
 
+@pytest.mark.slow
 def test_results_say_which_renderer_drew_them() -> None:
   scene = registry.find('no_send', observers=1, duration_s=0.2)
   name = gl.render_once().renderer

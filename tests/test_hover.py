@@ -26,6 +26,7 @@ def drawn(name: str, seed: int = 0, **changes: float) -> drift.Sway:
   return wanted.observer(np.random.RandomState(seed))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('name', PRESETS)
 def test_a_preset_does_what_its_source_has_measured(name: str) -> None:
   """Within 15 %, its bands within 20 %; the slowest shows some of the next."""
@@ -40,6 +41,7 @@ def test_a_preset_does_what_its_source_has_measured(name: str) -> None:
       )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('name', PRESETS)
 def test_a_hover_wanders_slowly_too(name: str) -> None:
   """Windows of 40 s show more of it than those of 4 s."""
@@ -64,6 +66,7 @@ def test_an_amplitude_is_a_factor(amplitude: float) -> None:
   )
 
 
+@pytest.mark.slow
 def test_a_hover_is_smooth_and_begins_at_rest() -> None:
   sway = drawn('flow_deck')
   step_s = 0.0005
@@ -162,6 +165,7 @@ def attitude_rad(environment: object, name: str) -> np.ndarray:  # (3,)
   )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('rate_hz', [25.0, 10.0])
 def test_bodies_truly_hover_so(rate_hz: float, load: Callable) -> None:
   """Place, and a tilt of which little is lost between two references."""

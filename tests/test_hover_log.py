@@ -253,6 +253,7 @@ def test_a_log_is_flown_where_it_is_asked_for(log: Columns) -> None:
       drift.Drift(**wrong)
 
 
+@pytest.mark.slow
 def test_the_command_shows_presets_beside_their_sources(waggle: Waggle) -> None:
   child = waggle('drift', '--hover=mocap')
   assert child.returncode == 0, child.stderr
@@ -263,6 +264,7 @@ def test_the_command_shows_presets_beside_their_sources(waggle: Waggle) -> None:
   assert ('z', 'mm', 'source') not in lines
 
 
+@pytest.mark.slow
 def test_the_command_shows_and_draws_a_log(
   log: Columns, waggle: Waggle, tmp_path: pathlib.Path
 ) -> None:

@@ -60,6 +60,7 @@ def test_jobs_whose_times_round_up_end_together(
   assert '5/5 s simulated' in capsys.readouterr().err.splitlines()[-1]
 
 
+@pytest.mark.slow
 def test_a_whole_flight_is_kept_where_warnings_are_errors(
   waggle: Callable[..., subprocess.CompletedProcess[str]],
   tmp_path: pathlib.Path,

@@ -27,14 +27,14 @@ def fly(**changes: object) -> tuple[verdicts.Outcome, list[receiver.Event]]:
 @pytest.mark.parametrize(
   'language',
   [
-    pytest.param(name, marks=[pytest.mark.slow] * (name == 'gentle'))
+    pytest.param(name, marks=[pytest.mark.long] * (name == 'gentle'))
     for name in languages.LANGUAGES
   ],
 )
 @pytest.mark.parametrize(
   ('distance_m', 'bearing_deg', 'noise_sigma'),
   [
-    pytest.param(1.3, 0, 0, marks=pytest.mark.slow),
+    pytest.param(1.3, 0, 0, marks=pytest.mark.long),
     (3.0, 75, 10),
   ],
 )
@@ -54,6 +54,7 @@ def test_a_message_is_read_and_flown(
   assert end.distance_m == pytest.approx(distance_m, rel=0.1)
 
 
+@pytest.mark.slow
 def test_swift_is_read_within_5_s_of_its_first_stroke_and_brisk_in_12_s() -> (
   None
 ):
@@ -64,6 +65,7 @@ def test_swift_is_read_within_5_s_of_its_first_stroke_and_brisk_in_12_s() -> (
   assert brisk.final_null_s <= 12.0
 
 
+@pytest.mark.slow
 def test_another_camera_reads_the_same() -> None:
   outcome, events = fly(
     language='swift', payload='101101', camera_width_px=320,
@@ -74,6 +76,7 @@ def test_another_camera_reads_the_same() -> None:
   assert end.distance_m == pytest.approx(1.3, rel=0.1)
 
 
+@pytest.mark.slow
 def test_data_are_read_in_packets_and_nobody_moves() -> None:
   outcome, events = fly(language='swift', bits=BITS * 5)
   assert not outcome.failures
@@ -82,6 +85,7 @@ def test_data_are_read_in_packets_and_nobody_moves() -> None:
   assert sum(each.word is not None for each in events) == 2
 
 
+@pytest.mark.slow
 def test_a_frame_that_was_hidden_is_read_in_the_next_round() -> None:
   dark = sensor.Sensor(blackout_s=2.5, blackout_length_s=3.0)
   once, _ = fly(language='swift', sensor=dark)
@@ -91,6 +95,7 @@ def test_a_frame_that_was_hidden_is_read_in_the_next_round() -> None:
   assert not twice.failures
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
   'spoilt',
   [
@@ -98,7 +103,7 @@ def test_a_frame_that_was_hidden_is_read_in_the_next_round() -> None:
     {'sensor': sensor.Sensor(blackout_s=3.2, blackout_length_s=0.6)},
     pytest.param(
       {'drift': drift.Drift(performer_hover='mocap'), 'seed': 1},
-      marks=pytest.mark.slow,
+      marks=pytest.mark.long,
     ),
     {'drift': HOVER, 'seed': 858278},
     {'dynamics': 'rotors'},
@@ -111,13 +116,14 @@ def test_swift_bears_it(spoilt: dict) -> None:
   assert outcome.decoded == '011010'
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_brisk_is_read_of_a_dancer_that_hovers() -> None:
   hover = drift.Drift(performer_hover='mocap')
   outcome, _ = fly(language='brisk', payload='011010', drift=hover, seed=1)
   assert outcome.decoded == '011010'
 
 
+@pytest.mark.slow
 def test_who_sees_nothing_at_first_learns_the_scene_later() -> None:
   dark = sensor.Sensor(blackout_length_s=3.0)
   outcome, _ = fly(language='swift', sensor=dark, repeat=2)
@@ -129,13 +135,13 @@ def test_who_sees_nothing_at_first_learns_the_scene_later() -> None:
   [
     *(
       pytest.param(
-        'swift', name, 5, marks=[pytest.mark.slow] * bool(number % 3)
+        'swift', name, 5, marks=[pytest.mark.long] * bool(number % 3)
       )
       for number, name in enumerate(FRAMES)
     ),
     ('swift', 'repeated', 475138),  # START and the levels 7 and 0 are alike.
-    pytest.param('brisk', 'seven_bits', 5, marks=pytest.mark.slow),
-    pytest.param('brisk', 'begun_anew', 5, marks=pytest.mark.slow),
+    pytest.param('brisk', 'seven_bits', 5, marks=pytest.mark.long),
+    pytest.param('brisk', 'begun_anew', 5, marks=pytest.mark.long),
     ('brisk', 'start_repeated', 640181),  # A START where a bit should be.
   ],
 )
@@ -158,7 +164,7 @@ def test_a_start_that_does_not_begin_at_rest_opens_no_frame() -> None:
   assert not outcome.failures
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_the_papers_own_dance_is_read_as_a_whole_too() -> None:
   outcome, _ = fly(payload='101101')
   assert outcome.decoded == '101101'

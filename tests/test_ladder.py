@@ -212,6 +212,7 @@ def test_a_target_that_was_not_found_is_not_read() -> None:
   assert track_level.read(scene(), 'joint', blind) == [[]]
 
 
+@pytest.mark.slow
 def test_words_are_read_as_often_as_was_measured() -> None:
   cells = tuple(
     ladder_table.Cell('calm', 1.0, angle, 1000, read, 0, (0.2,), ())
@@ -286,6 +287,7 @@ def test_levels_that_differ_are_told_apart() -> None:
   assert (apart.only_pixels, apart.only_tracks) == (6, 0)
 
 
+@pytest.mark.slow
 def test_a_sweep_of_tracks_needs_no_pictures(
   waggle: Waggle, tmp_path: pathlib.Path
 ) -> None:
@@ -301,6 +303,7 @@ def test_a_sweep_of_tracks_needs_no_pictures(
   assert all(table['outcomes'][0]['right'] for table in tables)
 
 
+@pytest.mark.slow
 def test_a_broadcast_without_pictures_prints_what_was_read(
   waggle: Waggle, tmp_path: pathlib.Path
 ) -> None:

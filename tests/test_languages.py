@@ -60,6 +60,7 @@ alphabets_ = st.one_of(
 )
 
 
+@pytest.mark.slow
 @given(alphabets_, st.data())
 def test_a_frame_of_any_word_goes_on_where_it_was_and_ends_at_home(
   alphabet: languages.alphabets.Alphabet, data: st.DataObject
@@ -398,6 +399,7 @@ def test_text_that_is_no_language_is_refused(text: str, error: str) -> None:
     scenario_fields.make({'language': scenario_fields.parse('language', text)})
 
 
+@pytest.mark.slow
 def test_the_command_shows_every_language_as_the_documents_have_it(
   waggle: Waggle, no_gl: dict[str, str], tmp_path: pathlib.Path
 ) -> None:
@@ -438,6 +440,7 @@ def test_the_command_shows_every_language_as_the_documents_have_it(
   assert [*tmp_path.iterdir()] == []
 
 
+@pytest.mark.slow
 def test_the_command_shows_and_draws_a_language_of_ones_own(
   waggle: Waggle, tmp_path: pathlib.Path
 ) -> None:
@@ -452,6 +455,7 @@ def test_the_command_shows_and_draws_a_language_of_ones_own(
   assert (tmp_path / 'out' / 'languages.png').stat().st_size > 10_000
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
   ('arguments', 'error'),
   [
@@ -472,6 +476,7 @@ def test_the_command_refuses_in_one_line(
   assert [each.name for each in tmp_path.iterdir()] == ['near.json']
 
 
+@pytest.mark.slow
 def test_a_language_of_ones_own_is_danced_read_and_followed(
   waggle: Waggle, tmp_path: pathlib.Path
 ) -> None:
@@ -489,6 +494,7 @@ def test_a_language_of_ones_own_is_danced_read_and_followed(
   assert dataclasses.replace(scene, language='swift') != scene
 
 
+@pytest.mark.slow
 def test_a_suite_has_a_folder_for_a_language_of_ones_own(
   waggle: Waggle, tmp_path: pathlib.Path
 ) -> None:

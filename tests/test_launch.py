@@ -158,6 +158,7 @@ def test_a_mistake_of_ours_keeps_its_traceback(toy: Launch) -> None:
   assert child.stderr.endswith('ZeroDivisionError: ours\n')
 
 
+@pytest.mark.slow
 def test_a_machine_that_cannot_render_is_told_so_in_one_line(
   toy: Launch,
 ) -> None:
@@ -171,6 +172,7 @@ def test_a_machine_that_cannot_render_is_told_so_in_one_line(
   )
 
 
+@pytest.mark.slow
 def test_a_renderer_without_a_display_ends_with_the_line_that_mends_it(
   toy: Launch,
 ) -> None:

@@ -86,11 +86,12 @@ def any_size(monkeypatch: pytest.MonkeyPatch) -> None:
   monkeypatch.setattr('waggle_tasks.protocol.camera.MIN_SIDE_PX', 16)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
   ('language', 'place'),
   [
     ('swift', {'distance_m': 2.0, 'bearing_deg': 60}),
-    pytest.param('paper', {}, marks=pytest.mark.slow),
+    pytest.param('paper', {}, marks=pytest.mark.long),
   ],
 )
 def test_a_message_is_read_and_flown(language: str, place: dict) -> None:
@@ -107,6 +108,7 @@ def test_a_message_is_read_and_flown(language: str, place: dict) -> None:
   assert end.clear >= 0.9
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('language', ['swift', 'paper'])
 def test_tracks_are_read_from_everywhere(language: str) -> None:
   words = '000000', '101101', '111111', '010010'
@@ -121,7 +123,7 @@ def test_tracks_are_read_from_everywhere(language: str) -> None:
     pytest.param(
       language,
       control,
-      marks=[pytest.mark.slow] * (language == 'paper' or bool(number % 4)),
+      marks=[pytest.mark.long] * (language == 'paper' or bool(number % 4)),
     )
     for language in learned_weights.TRAINED
     for number, control in enumerate(decoys.DECOYS)
@@ -149,7 +151,7 @@ def test_a_symbol_that_was_hidden_is_filled_by_the_code() -> None:
   assert read(agreed('swift'), hidden) == ['101101']
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_bit_of_the_paper_that_was_hidden_is_not_guessed() -> None:
   tracks = dance(agreed('paper'), 'none', '101101', 1)
   hidden = [
@@ -231,7 +233,7 @@ def test_what_was_not_seen_has_no_place_in_a_window() -> None:
   )
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_training_learns_and_weights_are_kept_as_they_are() -> None:
   spoken = agreed('swift').spoken
   tracks = learned_tracks.Tracks(spoken.alphabet, spoken.confirm_s)
@@ -245,7 +247,7 @@ def test_training_learns_and_weights_are_kept_as_they_are() -> None:
     np.testing.assert_array_equal(array, kept.arrays()[name])
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_the_weights_of_the_package_come_of_its_own_command(
   tmp_path: pathlib.Path,
 ) -> None:
@@ -260,6 +262,7 @@ def test_the_weights_of_the_package_come_of_its_own_command(
       np.testing.assert_allclose(new[name], kept[name], rtol=0.05, atol=0.05)
 
 
+@pytest.mark.slow
 def test_training_refuses_a_language_that_there_is_not() -> None:
   run = [sys.executable, '-m', 'waggle_tasks.experiments.train_learned']
   child = subprocess.run(

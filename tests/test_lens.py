@@ -99,6 +99,7 @@ def _line(
   return off, shown
 
 
+@pytest.mark.slow
 def test_a_straight_line_bends_as_far_as_brown_says() -> None:
   off, shown = _line(lens_lib.Lens('brown', k1=-0.2), 50.0, 0.3)
   x, y = shown.T

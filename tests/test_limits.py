@@ -135,6 +135,7 @@ def test_paths_that_overlap_are_refused() -> None:
     limits.check_schedule(schedule.Schedule(tuple(slots)))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('name', decoys.DECOYS)
 def test_decoys_can_be_flown(name: str) -> None:
   for seed in range(5):
@@ -142,6 +143,7 @@ def test_decoys_can_be_flown(name: str) -> None:
     limits.check_schedule(decoys.perform(name, seed, book, timing.Timing()))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
   ('sizes', 'duration_s'), [((0.285, 0.62), 3.3), ((0.12, 0.25), 2.0)]
 )

@@ -32,6 +32,7 @@ def test_lines_are_told_when_they_change(
   ]
 
 
+@pytest.mark.slow
 def test_a_broadcast_tells_what_is_read_as_it_flies(
   waggle: Waggle, tmp_path: pathlib.Path
 ) -> None:

@@ -39,6 +39,7 @@ def rest() -> list[np.ndarray]:
   return [*noisy(REST)]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('alive', [0, 20, 60])
 def test_a_noisy_camera_that_freezes_is_noticed(
   rest: list[np.ndarray], alive: int
@@ -47,6 +48,7 @@ def test_a_noisy_camera_that_freezes_is_noticed(
   assert lives([rest, frozen]) is False
 
 
+@pytest.mark.slow
 def test_a_freeze_at_the_very_end_is_not(rest: list[np.ndarray]) -> None:
   late = [*noisy(REST - 8, 1), *[rest[-1]] * 8]
   assert lives([rest, late])

@@ -52,7 +52,7 @@ def hidden(
 
 
 @pytest.mark.parametrize(
-  'every', [5, pytest.param(2, marks=pytest.mark.slow)], ids=['few', 'many']
+  'every', [5, pytest.param(2, marks=pytest.mark.long)], ids=['few', 'many']
 )
 @pytest.mark.parametrize(
   ('control', 'name'),
@@ -60,7 +60,7 @@ def hidden(
     pytest.param(
       control,
       name,
-      marks=[pytest.mark.slow] * (second or control != 'seven_bits'),
+      marks=[pytest.mark.long] * (second or control != 'seven_bits'),
     )
     for control in HIDDEN
     for second, name in enumerate(['view_bank', 'klt'])
@@ -79,6 +79,7 @@ def test_with_a_part_hidden_no_message_is_read(
     assert read(loss(seen.play()), name, scene) == [], loss
 
 
+@pytest.mark.slow
 def test_by_order_alone_a_message_is_read_that_was_not_danced(
   flown: Flown,
 ) -> None:
@@ -88,10 +89,11 @@ def test_by_order_alone_a_message_is_read_that_was_not_danced(
   assert read(loss(seen.play()), 'klt', scene) == []
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
   ('name', 'gap_s'),
   [
-    pytest.param('klt', 60.0, marks=pytest.mark.slow),
+    pytest.param('klt', 60.0, marks=pytest.mark.long),
     ('view_bank', 7.0),
     ('view_bank', 60.0),
   ],
@@ -109,6 +111,7 @@ def test_halves_of_two_dances_are_no_message(
   assert read(halves(), name, scene) == []
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('kind', spoilers.LOSSES)
 def test_a_loss_that_can_hide_no_gesture_costs_nothing(
   kind: str, flown: Flown
@@ -120,6 +123,7 @@ def test_a_loss_that_can_hide_no_gesture_costs_nothing(
   assert read(loss(seen.play()), 'view_bank', scene) == [scene.payload]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('kind', spoilers.LOSSES)
 @pytest.mark.parametrize('name', ['klt', 'view_bank'])
 def test_a_loss_that_can_hide_one_breaks_the_frame_and_says_so(

@@ -78,6 +78,7 @@ def test_help_of_a_command_shows_its_own_flags_and_no_others(
   assert max(map(len, child.stdout.splitlines())) <= 80
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
   ('argument', 'line'),
   [

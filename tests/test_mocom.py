@@ -77,12 +77,13 @@ def test_a_gesture_that_was_hidden_is_out_of_the_clock() -> None:
   assert agreed.motion(Symbol.ONE, moments[3], *before)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
   ('bits', 'angle_deg'),
   [
     ('011010', -45.0),
     *(
-      pytest.param(bits, angle_deg, marks=pytest.mark.slow)
+      pytest.param(bits, angle_deg, marks=pytest.mark.long)
       for bits in ('111111', '000000', '101101')
       for angle_deg in (-60.0, 0.0, 60.0)
     ),
@@ -102,8 +103,8 @@ def test_every_symbol_and_null_of_its_timelines_is_read_from_tracks(
   'view',
   [
     'behind',
-    pytest.param('upside down', marks=pytest.mark.slow),
-    pytest.param('on its side', marks=pytest.mark.slow),
+    pytest.param('upside down', marks=pytest.mark.long),
+    pytest.param('on its side', marks=pytest.mark.long),
   ],
 )
 def test_a_camera_that_is_not_upright_reads_nothing(view: str) -> None:
@@ -121,7 +122,7 @@ def test_upside_down_and_mirrored_a_1_is_a_0_and_no_start_tells_of_it() -> None:
   assert kit.said(events) is None
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize(('seed', 'distance_m'), [(1, 0.9), (2, 1.5)])
 def test_every_symbol_and_null_of_its_timelines_is_read_from_pictures(
   seed: int, distance_m: float

@@ -267,6 +267,7 @@ def test_a_module_that_was_loaded_by_its_path_is_known(
   assert outside.paths('mine', [SCENE]) == {'loaded': path}
 
 
+@pytest.mark.slow
 def test_one_flight_of_what_has_no_source_is_flown_with_a_note(
   tmp_path: pathlib.Path,
 ) -> None:
@@ -310,9 +311,9 @@ if __name__ == '__main__':
 """
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize(
-  'command', ['sweep', pytest.param('suite', marks=pytest.mark.slow)]
+  'command', ['sweep', pytest.param('suite', marks=pytest.mark.long)]
 )
 def test_an_edited_receiver_is_flown_anew(
   command: str, tmp_path: pathlib.Path

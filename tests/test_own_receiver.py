@@ -56,6 +56,7 @@ def test_the_documents_receiver_has_as_many_lines_as_they_say() -> None:
   assert len(lines) < 40
 
 
+@pytest.mark.slow
 def test_it_reads_a_message_and_its_source_is_kept(
   flown: tuple[pathlib.Path, str],
 ) -> None:
@@ -65,7 +66,7 @@ def test_it_reads_a_message_and_its_source_is_kept(
   assert 'plain' in archive.read_json(folder / 'provenance.json')['sources']
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_its_raw_images_are_read_again_by_it_and_by_another(
   waggle: Waggle, home: pathlib.Path, flown: tuple[pathlib.Path, str]
 ) -> None:
@@ -80,6 +81,7 @@ def test_its_raw_images_are_read_again_by_it_and_by_another(
   assert {same, other} <= {*child.stdout.splitlines()}
 
 
+@pytest.mark.slow
 def test_its_page_is_drawn_where_it_is_and_where_it_is_not(
   waggle: Waggle,
   home: pathlib.Path,
@@ -210,6 +212,7 @@ def test_what_cannot_work_is_refused_before_it_is_flown(
     receivers.make(f'{module(text)}{name}')
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('command', ['suite', 'gallery', 'ablate', 'bench'])
 def test_every_command_names_a_module_that_is_not_there(
   command: str, waggle: Waggle, tmp_path: pathlib.Path
@@ -220,6 +223,7 @@ def test_every_command_names_a_module_that_is_not_there(
   assert not [*tmp_path.iterdir()]
 
 
+@pytest.mark.slow
 def test_what_is_no_tuple_of_events_ends_in_one_line(
   waggle: Waggle, tmp_path: pathlib.Path
 ) -> None:
@@ -293,7 +297,7 @@ def test_open_choices_but_for_the_papers_own_are_moved_with_it() -> None:
   assert 'dim' not in left_out
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_an_edited_one_is_flown_anew(
   waggle: Waggle, tmp_path: pathlib.Path
 ) -> None:

@@ -67,6 +67,7 @@ def test_the_dance_turns_with_the_dancer(dancer: performer.Performer) -> None:
   np.testing.assert_allclose(position_m, (0, -0.285, 0), atol=1e-9)
 
 
+@pytest.mark.slow
 @hypothesis.settings(max_examples=60)
 @hypothesis.given(st.floats(0.0, DANCE.end_s + 5.0))
 def test_stopped_at_any_time_it_brakes_smoothly_and_hovers(
@@ -125,6 +126,7 @@ def test_the_first_stop_counts_and_a_new_dance_forgets_it(
   assert dancer.is_whole
 
 
+@pytest.mark.slow
 def test_the_dance_is_followed_within_2_mm_from_its_begin_to_its_end(
   load: Load, episode: Fixture, hover: Fixture
 ) -> None:
@@ -138,6 +140,7 @@ def test_the_dance_is_followed_within_2_mm_from_its_begin_to_its_end(
   assert max(errors_m) < 2e-3
 
 
+@pytest.mark.slow
 def test_the_vehicle_is_moved_by_forces_alone(
   load: Load, episode: Fixture, hover: Fixture
 ) -> None:
@@ -182,6 +185,7 @@ def test_gravity_pulls_and_thrust_carries(load: Load, hover: Fixture) -> None:
   assert fallen_m == pytest.approx(9.81 * 0.4**2 / 2, rel=0.05)
 
 
+@pytest.mark.slow
 def test_the_dancer_stays_level_and_keeps_its_heading(
   load: Load, episode: Fixture, hover: Fixture
 ) -> None:

@@ -38,23 +38,25 @@ MOUNTS = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
   'mount',
   [
     'upside down',
     'up and aslant',
-    pytest.param('shaking', marks=pytest.mark.slow),
+    pytest.param('shaking', marks=pytest.mark.long),
   ],
 )
 def test_a_message_is_read_however_the_camera_is_mounted(mount: str) -> None:
   assert read('joint', language='swift', **MOUNTS[mount]) == ['100110']
 
 
+@pytest.mark.slow
 def test_a_message_is_read_through_the_smallest_camera() -> None:
   assert read('joint', language='swift', eye='ai_deck') == ['100110']
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize('name', ['fpv', 'phone', 'webcam'])
 def test_a_message_is_read_through_each_camera(name: str) -> None:
   if name == 'phone':
@@ -62,19 +64,20 @@ def test_a_message_is_read_through_each_camera(name: str) -> None:
   assert read('joint', language='swift', eye=name) == ['100110']
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize('name', ['ai_deck', 'fpv', 'webcam'])
 def test_the_paper_s_language_is_read_through_each_camera(name: str) -> None:
   quick = {'half_width_m': 0.2, 'gesture_s': 4.0, 'settle_s': 0.9}
   assert read('view_bank', eye=name, **quick) == ['100110']
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_message_is_read_before_clutter_by_a_camera_that_rolls() -> None:
   moving = {'rolling_deg': 2.0, 'walls': 'clutter'}
   assert read('joint', language='swift', **moving) == ['100110']
 
 
+@pytest.mark.slow
 def test_no_message_is_read_of_a_dance_that_is_none() -> None:
   scene = {'control': 'no_send', 'eye': 'ai_deck', 'duration_s': 4.0}
   assert read('joint', language='swift', **scene) == []

@@ -13,7 +13,7 @@ LANGUAGE = {
   'codebook': gestures.v_codebook(duration_s=4.5),
   'pauses': timing.Timing(3.5, 1.0, 1.5, 1.0),
 }
-LONG = pytest.mark.slow
+LONG = pytest.mark.long
 
 
 def read(seed: int, hover: drift.Drift, **fields: object) -> verdicts.Verdict:
@@ -45,7 +45,7 @@ def test_a_message_is_read_through_the_hover_of_real_vehicles(
 
 
 @pytest.mark.parametrize('control', ['seven_bits', 'random_walk'])
-@pytest.mark.slow
+@pytest.mark.long
 def test_what_is_no_message_is_none_when_everybody_hovers(control: str) -> None:
   both = drift.Drift(performer_hover='mocap', observer_hover='mocap')
   verdict = read(3, both, control=control)

@@ -43,6 +43,7 @@ def run(block: str, namespace: dict[str, object]) -> str:
   return out.getvalue()
 
 
+@pytest.mark.slow
 def test_the_loop_reads_and_flies_a_message(
   first: tuple[dict[str, object], str],
 ) -> None:
@@ -51,6 +52,7 @@ def test_the_loop_reads_and_flies_a_message(
   assert out.count('direction=1, heading=0, distance=2') == 2
 
 
+@pytest.mark.slow
 def test_a_faster_language_is_read_by_the_same_loop(
   namespace: dict[str, object],
 ) -> None:
@@ -60,7 +62,7 @@ def test_a_faster_language_is_read_by_the_same_loop(
   assert namespace['environment'].task.performer.end_s < 65
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_everyone_in_a_layout_of_ones_own_reads(
   namespace: dict[str, object],
 ) -> None:
@@ -69,6 +71,7 @@ def test_everyone_in_a_layout_of_ones_own_reads(
   assert out.count('direction=0, heading=0, distance=2') == 5
 
 
+@pytest.mark.slow
 def test_the_scenario_of_a_run_is_made_again(
   namespace: dict[str, object], tmp_path: pathlib.Path
 ) -> None:

@@ -58,7 +58,7 @@ def play() -> Iterator[Callable[..., tuple]]:
     environment.close()
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize('height_m', [1.2, 1.5])
 def test_a_message_leads_to_the_agreed_height_for_everyone(
   height_m: float, play: Callable[..., tuple], short: dict[str, object]
@@ -86,6 +86,7 @@ def test_a_message_leads_to_the_agreed_height_for_everyone(
   assert outcome.arrival_s == pytest.approx(arrival.time_s, abs=0.09)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
   ('tilt_deg', 'said'),
   [
@@ -161,6 +162,7 @@ SHORT = ('--settle_s=0.5', '--lead_in_s=0.8')
 SUITE = [{'name': 'short', 'pauses': {'settle_s': 0.5, 'lead_in_s': 0.8}}]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
   'command',
   [

@@ -123,6 +123,7 @@ def test_a_frozen_picture_is_a_single_null(clip: object, read: Read) -> None:
   assert names(read([clip.images[0]] * 2000, times_s)) == 'NULL'
 
 
+@pytest.mark.slow
 def test_noise_of_a_camera_does_not_spoil_reading(
   clip: object, read: Read
 ) -> None:

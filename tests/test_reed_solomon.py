@@ -72,6 +72,7 @@ def test_a_block_is_that_of_the_textbook() -> None:
   assert reed_solomon.encode([0, 0, 1], 2, 8) == (0, 0, 1, 6, 3)
 
 
+@pytest.mark.slow
 @hypothesis.settings(max_examples=300)
 @hypothesis.given(st.data(), blocks())
 def test_whatever_is_near_enough_is_found_and_nothing_else(

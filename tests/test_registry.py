@@ -35,6 +35,7 @@ class Ring:
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('name', registry.SCENARIOS)
 def test_each_name_makes_an_environment_that_says_whether_it_sends(
   name: str, load: Load
@@ -92,6 +93,7 @@ def test_changes_reach_the_scenario_and_leave_the_table_alone() -> None:
   assert registry.find('no_send').seed == 0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('count', [1, 3, 8])
 def test_vehicles_stand_where_the_layout_puts_them(
   count: int, load: Load
@@ -105,6 +107,7 @@ def test_vehicles_stand_where_the_layout_puts_them(
   np.testing.assert_allclose([*positions_m.values()], expected, atol=1e-9)
 
 
+@pytest.mark.slow
 def test_a_layout_of_ones_own_runs_an_episode(load: Load) -> None:
   environment = load('broadcast', observers=4, layout=Ring(1.5), duration_s=0.4)
   timestep = environment.reset()
@@ -128,6 +131,7 @@ def test_a_room_that_is_too_small_is_said_so() -> None:
     waggle_tasks.load('broadcast', observers=64, layout='line')
 
 
+@pytest.mark.slow
 def test_the_seed_decides_the_jitter(load: Load) -> None:
   def begin(seed: int) -> np.ndarray:
     environment = load('broadcast', cameras=False, jitter_m=0.01, seed=seed)
@@ -156,6 +160,7 @@ def test_each_reset_draws_its_own_jitter(load: Load) -> None:
   assert np.abs(places_m[0] - places_m[1]).max() > 1e-4
 
 
+@pytest.mark.slow
 def test_dm_control_may_be_imported_first_where_there_is_no_display() -> None:
   """As sorted imports do; the GL backend must be chosen all the same."""
   code = (

@@ -116,6 +116,7 @@ def random_turn(rng: np.random.RandomState) -> np.ndarray:  # (4,)
   return turn / np.linalg.norm(turn)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('vehicles', [2, 3, 5, 8])
 def test_pictures_in_parts_equal_pictures_at_once(
   vehicles: int, studio: Callable[..., Studio]
@@ -206,6 +207,7 @@ def test_what_is_out_of_view_is_not_drawn(
   np.testing.assert_array_equal(after, stage.full(eye))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
   ('offset_m', 'name'),
   [
@@ -233,6 +235,7 @@ def test_a_vehicle_very_near_or_over_the_edge_leaves_no_trace(
   np.testing.assert_array_equal(stage.image(eye), first, name)
 
 
+@pytest.mark.slow
 def test_vehicles_that_cross_hide_each_other(
   studio: Callable[..., Studio],
 ) -> None:
@@ -260,6 +263,7 @@ def test_two_cameras_keep_their_own_pictures(
   assert (stage.image(eyes[0]) != stage.image(eyes[1])).any()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
   ('field', 'element', 'value'),
   [

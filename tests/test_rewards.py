@@ -25,6 +25,7 @@ HURRIED = {
 HURRIED_END_S = 0.2 + 8 * 0.8 + 7 * 0.1
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('observers', [1, 3])
 def test_flying_the_message_earns_one_and_ends_the_episode(
   observers: int, load: Load, episode: Fixture, flyer: Fixture
@@ -43,6 +44,7 @@ def test_flying_the_message_earns_one_and_ends_the_episode(
   assert all(each.discount == 1 for each in steps[1:])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
   ('bits', 'offset_m'),
   [
@@ -68,6 +70,7 @@ def test_the_reward_is_where_the_message_says(
   assert earned == [1.0, 0.0]
 
 
+@pytest.mark.slow
 def test_moving_before_the_message_is_complete_costs_one(
   load: Load, episode: Fixture, flyer: Fixture
 ) -> None:
@@ -81,6 +84,7 @@ def test_moving_before_the_message_is_complete_costs_one(
   assert 0.04 * len(rewards) == pytest.approx(14.0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('name', ['no_send', 'interrupted'])
 def test_without_a_message_flying_only_costs(
   name: str, load: Load, episode: Fixture, flyer: Fixture
@@ -94,6 +98,7 @@ def test_without_a_message_flying_only_costs(
   assert sum(each.reward[0] for each in steps[1:]) == -1.0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('name', TASKS)
 def test_hovering_earns_nothing(
   name: str, load: Load, episode: Fixture, hover: Fixture
@@ -204,6 +209,7 @@ def test_nobody_moves_when_nothing_is_sent(
   assert not task.sends_message
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('black', [1, 2, 3])
 def test_one_observer_sees_only_black(
   black: int, load: Load, episode: Fixture, hover: Fixture
@@ -216,6 +222,7 @@ def test_one_observer_sees_only_black(
       assert min(brightest[: black - 1] + brightest[black:]) > 100
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('stop_s', [0.1, 0.5, 3.0, 4.02])
 def test_a_performer_that_is_stopped_brakes_and_hovers(
   stop_s: float, load: Load, episode: Fixture, hover: Fixture

@@ -91,7 +91,7 @@ def test_several_environments_are_stepped_in_one_process() -> None:
   many.close()
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_several_environments_are_stepped_in_processes_of_their_own() -> None:
   many = gymnasium.make_vec(
     'waggle_tasks.rl:waggle/Broadcast-v0', num_envs=2,
@@ -157,6 +157,7 @@ def test_small_actions_fly_as_agreed(
     assert reasons == {'observer_1': 'arrived'}
 
 
+@pytest.mark.slow
 def test_the_tasks_own_actions_are_those_of_a_team() -> None:
   """Also the whole chain: what is drawn is read from pictures and flown."""
   env = parallel(
@@ -180,6 +181,7 @@ def test_the_tasks_own_actions_are_those_of_a_team() -> None:
   assert len({*drawn}) == 2
 
 
+@pytest.mark.slow
 def test_a_reset_draws_and_equal_seeds_draw_the_same() -> None:
   """Whether the environment is new or was used before."""
   used, new = (parallel(observers=1, **SMALL) for _ in range(2))

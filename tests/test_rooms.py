@@ -2,9 +2,12 @@
 
 import re
 
+import pytest
+
 from waggle_tasks.experiments.pages import rooms
 
 
+@pytest.mark.slow
 def test_the_picture_has_every_room_and_nothing_runs_up() -> None:
   found = rooms.counts()
   assert {name for pair in found for name in pair} == {*rooms.ROOMS}

@@ -102,6 +102,7 @@ def test_a_hover_takes_a_quarter_of_the_weight_of_each_rotor(
   np.testing.assert_allclose(flight.physics.data.qpos[:3], PLACE_M, atol=1e-9)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
   'offset_m', [(0.3, 0.0, 0.0), (0.0, 0.0, 0.5), (0.2, 0.2, -0.4)]
 )
@@ -145,6 +146,7 @@ def test_a_circle_is_flown_at_the_tilt_that_it_takes(
   assert max(errors_m) < 0.01
 
 
+@pytest.mark.slow
 def test_a_v_is_flown_at_the_tilt_that_its_pace_takes(
   rig: Callable[..., Rig],
 ) -> None:
@@ -299,6 +301,7 @@ def test_no_reference_asks_for_more_than_rotors_can(
   np.testing.assert_allclose(flight.physics.data.qpos[:3], PLACE_M, atol=0.01)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('turn_rad', [0.5, -1.5, 3.0])
 def test_a_turn_is_counted_from_the_vehicles_own_heading(
   turn_rad: float, rig: Callable[..., Rig]
@@ -320,6 +323,7 @@ def test_a_push_is_recovered_from(rig: Callable[..., Rig]) -> None:
   np.testing.assert_allclose(flight.physics.data.qpos[:3], PLACE_M, atol=2e-3)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('size_m', [0.06, 0.2, 0.5])
 @pytest.mark.parametrize('up', [False, True])
 def test_what_the_limits_allow_is_flown_within_30_mm(

@@ -137,6 +137,7 @@ def test_the_command_starts_on_a_broken_pair_and_says_so_in_one_line() -> None:
   assert line.startswith('waggle broadcast: dm-control ')
 
 
+@pytest.mark.slow
 def test_the_imported_mujoco_is_believed_and_not_the_installed_one() -> None:
   child = run_python(
     "import waggle_tasks, mujoco\nmujoco.__version__ = '4.0.0'\n"

@@ -62,6 +62,7 @@ def shown(chosen: Sensor, frames: int = 250) -> tuple[np.ndarray, np.ndarray]:
   return images[:, 0, 0, 0].astype(int), told
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
   'chosen',
   [
@@ -80,6 +81,7 @@ def test_with_all_off_nothing_stands_between(
   assert seen.time_s.corruptor is None
 
 
+@pytest.mark.slow
 def test_noise_on_rendered_images_is_each_observers_own(
   dancing: Load, film: Film
 ) -> None:
@@ -155,6 +157,7 @@ def test_a_frozen_picture_has_new_times() -> None:
   assert [*told] == [*range(100)]
 
 
+@pytest.mark.slow
 def test_a_picture_can_freeze_for_good(dancing: Load, film: Film) -> None:
   frozen = film(dancing(sensor=Sensor(freeze_length_s=sensor.ALWAYS_S)))
   clean = film(dancing())
@@ -206,6 +209,7 @@ def test_the_noise_of_a_dropped_image_does_not_change() -> None:
   np.testing.assert_array_equal(seen, [seen[0]] * 3)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('other', [{'noise_sigma': 5.0}, {'photons': 100.0}])
 def test_one_disturbance_does_not_change_what_another_draws(
   other: dict[str, float], dancing: Load, episode: Fixture, hover: Fixture
@@ -221,6 +225,7 @@ def test_one_disturbance_does_not_change_what_another_draws(
   assert len({*map(float, told[0])}) < 11
 
 
+@pytest.mark.slow
 def test_images_and_times_follow_from_the_seed(
   dancing: Load, film: Film
 ) -> None:
@@ -271,6 +276,7 @@ def test_black_input_is_black_whatever_else_is_spoilt(
     assert first > 100
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('receiver', ['klt', 'view_bank'])
 def test_an_episode_with_everything_spoilt_is_flown(receiver: str) -> None:
   scene = scenario.Scenario(observers=2, duration_s=1.2, sensor=EVERYTHING)

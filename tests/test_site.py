@@ -39,11 +39,12 @@ def test_the_program_of_the_tutorial_reads_its_message() -> None:
   )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
   'name',
   [
     'first_broadcast',
-    pytest.param('compare_receivers', marks=pytest.mark.slow),
+    pytest.param('compare_receivers', marks=pytest.mark.long),
   ],
 )
 def test_a_notebook_prints_what_it_shows(

@@ -153,10 +153,11 @@ TELLING = (
 )  # fmt: skip
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
   'name',
   [
-    pytest.param(name, marks=[pytest.mark.slow] * (name not in TELLING))
+    pytest.param(name, marks=[pytest.mark.long] * (name not in TELLING))
     for name in SPOILERS
   ],
 )
@@ -174,7 +175,7 @@ def test_bursts_of_lost_images_cost_nothing(
   assert read(gone(begins_s, 0.2), receiver) == WANTED
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize('name', spoilers.LASTING)
 def test_what_is_drawn_for_replays_can_be_read(
   name: str, read: Callable[..., list[str]]

@@ -36,7 +36,7 @@ DISTURBANCES = {
 
 # What is flown together here, and each of it alone in longer runs.
 TOGETHER = [
-  name if name == 'all' else pytest.param(name, marks=pytest.mark.slow)
+  name if name == 'all' else pytest.param(name, marks=pytest.mark.long)
   for name in DISTURBANCES
 ]
 
@@ -56,6 +56,7 @@ def images(
     yield timestep.observation[0]['camera'].copy()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('name', TOGETHER)
 def test_both_cameras_see_the_same(name: str, load: Callable) -> None:
   """Over 2.4 s in which the board passes, and shadows and vehicles move."""
@@ -81,6 +82,7 @@ def test_both_cameras_see_the_same(name: str, load: Callable) -> None:
   assert (first != last).any()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('name', TOGETHER)
 def test_a_picture_kept_up_to_date_is_one_drawn_anew(
   name: str, load: Callable
@@ -103,6 +105,7 @@ def usual() -> list[np.ndarray]:
   return seen
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('name', [*DISTURBANCES][:-1])
 def test_each_disturbance_shows(
   name: str, load: Callable, usual: list[np.ndarray]
@@ -119,6 +122,7 @@ def test_by_default_nothing_is_there(load: Callable) -> None:
   assert model.nlight == 3
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('seed', range(8))
 def test_bystanders_are_in_nobodys_way(seed: int) -> None:
   flyers = _bystanders(seed)
@@ -152,12 +156,14 @@ def _bystanders(seed: int) -> list[bystander.Bystander]:
   return flyers
 
 
+@pytest.mark.slow
 def test_bystanders_differ_by_seed() -> None:
   places = [_bystanders(seed)[0].place_m(5.0) for seed in (1, 1, 2)]
   np.testing.assert_array_equal(places[0], places[1])
   assert np.linalg.norm(places[0] - places[2]) > 0.01
 
 
+@pytest.mark.slow
 def test_nothing_touches_anything(load: Callable, episode: Callable) -> None:
   environment = load(
     'random_walk',
@@ -176,6 +182,7 @@ def test_nothing_touches_anything(load: Callable, episode: Callable) -> None:
   assert discounts[1:] == [1.0] * 750
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
   'changes',
   [{}, {'half_span_deg': 75.0}, {'distance_m': 0.6}, {'bearing_deg': 120.0}],
@@ -212,6 +219,7 @@ def test_a_board_passes_every_observer_and_runs_into_none(
     assert (along_m[between] < np.linalg.norm(place_m)).all()
 
 
+@pytest.mark.slow
 def test_a_board_hides_the_performer(load: Callable) -> None:
   environment = load(
     observers=1,
@@ -310,6 +318,7 @@ def test_clutter_is_the_same_each_time_and_has_no_seam() -> None:
     assert np.abs(first - last).mean() < 3 * inside
 
 
+@pytest.mark.slow
 def test_shadows_lie_on_the_floor_along_the_light(load: Callable) -> None:
   environment = load(
     observers=1, cameras=False, pauses=FAST, appearance=Look(sun='moving')
@@ -331,6 +340,7 @@ def test_shadows_lie_on_the_floor_along_the_light(load: Callable) -> None:
   assert turned_rad > 0.02
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('name', ['bystanders', 'occluder', 'clutter', 'all'])
 def test_pictures_are_those_that_mujoco_draws(
   name: str, load: Callable

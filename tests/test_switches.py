@@ -63,6 +63,7 @@ def test_an_observable_that_nobody_has_is_refused(
     environment.reset()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
   'spoilt', [sensor.Sensor(), sensor.Sensor(noise_sigma=3, late_frames=1)]
 )
@@ -93,6 +94,7 @@ def test_a_corruptor_of_a_users_own_acts_on_what_comes(
     np.testing.assert_array_equal(changed['position_m'], -plain['position_m'])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
   ('control_s', 'physics_s', 'error'),
   [
@@ -120,6 +122,7 @@ def test_a_time_step_that_is_not_the_dances_is_refused(
       task.control_timestep = control_s
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('physics_s', [0.002, 0.01])
 def test_another_physics_step_flies_the_same_dance(
   physics_s: float, load: Load, episode: Fixture, hover: Fixture
@@ -134,6 +137,7 @@ def test_another_physics_step_flies_the_same_dance(
   np.testing.assert_allclose(end_m(physics_s), end_m(0.004), atol=0.003)
 
 
+@pytest.mark.slow
 def test_a_physics_step_that_comes_too_late_is_refused(load: Load) -> None:
   environment = load(cameras=False, observers=1)
   environment.reset()
@@ -158,6 +162,7 @@ BUSY = {
 }
 
 
+@pytest.mark.slow
 def test_a_state_that_is_set_is_seen(load: Load, hover: Fixture) -> None:
   environment = load(**BUSY)
   environment.reset()
@@ -171,6 +176,7 @@ def test_a_state_that_is_set_is_seen(load: Load, hover: Fixture) -> None:
     np.testing.assert_array_equal(camera(physics), image)
 
 
+@pytest.mark.slow
 def test_a_state_with_its_time_is_flown_again(
   load: Load, hover: Fixture
 ) -> None:
@@ -186,6 +192,7 @@ def test_a_state_with_its_time_is_flown_again(
   assert (once[0] != once[-1]).any()
 
 
+@pytest.mark.slow
 def test_a_state_is_flown_again_in_another_episode(
   load: Load, hover: Fixture
 ) -> None:

@@ -43,6 +43,7 @@ class TestInterruptedConforms(Conformance, absltest.TestCase):
   name = 'interrupted'
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('name', TASKS)
 @pytest.mark.parametrize('observers', [2, 5])
 def test_each_observer_has_its_observations_and_its_action(
@@ -86,6 +87,7 @@ def test_times_are_those_of_the_camera(
   np.testing.assert_allclose(times_s, 0.04 * np.arange(51), atol=1e-9)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('name', TASKS)
 def test_a_random_agent_runs(name: str, load: Load, episode: Fixture) -> None:
   environment = load(name, duration_s=1.2)

@@ -112,6 +112,7 @@ def test_a_name_that_is_no_text_is_refused_before_the_work(
   assert [*tmp_path.iterdir()] == []
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
   'words', ['decode film.webm', 'decode pictures --fps=25', 'broadcast --video']
 )

@@ -184,6 +184,7 @@ def test_minimum_jerk_is_the_quintic_between_two_rests(
 NUMBER = st.floats(-2.0, 2.0)
 
 
+@pytest.mark.slow
 @hypothesis.given(NUMBER, NUMBER, NUMBER, st.floats(0.2, 2.0))
 def test_braking_begins_with_the_given_state_and_ends_at_rest(
   position: float, velocity: float, acceleration: float, duration_s: float

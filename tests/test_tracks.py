@@ -17,8 +17,8 @@ def scene(language: str, payload: str = '101101') -> scenario.Scenario:
   ('name', 'width_px'),
   [
     ('view_bank', np.nan),
-    pytest.param('absolute', np.nan, marks=pytest.mark.slow),
-    pytest.param('view_bank', 40.0, marks=pytest.mark.slow),
+    pytest.param('absolute', np.nan, marks=pytest.mark.long),
+    pytest.param('view_bank', 40.0, marks=pytest.mark.long),
   ],
 )
 def test_every_symbol_of_the_papers_language_is_read(
@@ -43,6 +43,7 @@ def test_frames_are_read_as_a_whole(language: str) -> None:
   assert kit.said(kit.read('joint', dance.agreement, rows)) == '101101'
 
 
+@pytest.mark.slow
 def test_a_gap_that_hides_no_gesture_is_bridged_and_a_long_one_is_not() -> None:
   dance = scene('paper')
   times_s, places = kit.seen(dance.agreement, dance.performance)
@@ -104,7 +105,7 @@ def test_what_is_no_place_is_refused(
     work.step(place, time_s)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize('view', ['upside down', 'upside down and mirrored'])
 def test_no_payload_upside_down_is_another_one(view: str) -> None:
   for value in range(64):
@@ -117,13 +118,14 @@ def test_no_payload_upside_down_is_another_one(view: str) -> None:
 SAME_FROM_BEHIND = 'swift', 'rapid'
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('view', kit.VIEWS)
 @pytest.mark.parametrize(
   ('language', 'name'),
   [
     ('swift', 'joint'),
-    pytest.param('brisk', 'joint', marks=pytest.mark.slow),
-    pytest.param('paper', 'view_bank', marks=pytest.mark.slow),
+    pytest.param('brisk', 'joint', marks=pytest.mark.long),
+    pytest.param('paper', 'view_bank', marks=pytest.mark.long),
   ],
 )
 def test_a_camera_that_is_not_upright_reads_nothing_wrong(

@@ -176,6 +176,7 @@ def test_a_message_is_read_from_every_view(
   assert min(each.margin for each in scores) > 0.15
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('view', [(1.3, 30.0), (2.6, 0.0)])
 def test_noise_does_not_spoil_reading(view: tuple[float, float]) -> None:
   events = watch(
@@ -204,6 +205,7 @@ def test_rendered_images_are_read(clip: object, short: dict) -> None:
   assert len(errors_px) > 240
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
   'changes',
   [
@@ -229,7 +231,7 @@ def test_the_first_stroke_is_read_whatever_else_is_seen(
   assert names(events) == 'NULL START NULL'
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize('size', [(0.002, 0.1), (0.005, 0.3)])
 @pytest.mark.parametrize('seed', range(2))
 def test_swaying_cameras_read_the_message(
@@ -244,13 +246,13 @@ def test_swaying_cameras_read_the_message(
   ('aside_m', 'earlier_s', 'is_read'),
   [
     (0.36, 0.2, True),
-    pytest.param(0.5, 0.0, True, marks=pytest.mark.slow),
+    pytest.param(0.5, 0.0, True, marks=pytest.mark.long),
     (-0.5, -0.2, True),
     # Their ways cross.
     (-0.36, 0.2, False),
     (0.36, 1.0, False),
     # Who dances alone beside the middle may be anybody.
-    pytest.param(0.36, 4.0, False, marks=pytest.mark.slow),
+    pytest.param(0.36, 4.0, False, marks=pytest.mark.long),
     (-0.5, 4.0, False),
   ],
 )
@@ -268,11 +270,12 @@ def test_of_two_dancers_the_one_in_the_middle_is_read_or_none(
   assert messages(events) or not is_read
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_black_images_are_read_as_nothing() -> None:
   assert watch(message_path('000010'), 9.0, spoil=lambda *_: BLACK) == []
 
 
+@pytest.mark.slow
 def test_an_empty_room_is_read_as_nothing() -> None:
   assert watch(lambda _: (9.0, 0.0), 10.0) == []
 
@@ -335,6 +338,7 @@ NO_SYMBOLS = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('path', NO_SYMBOLS.values(), ids=NO_SYMBOLS)
 @pytest.mark.parametrize('view', [(1.3, 0.0), (1.0, 50.0)])
 def test_other_motions_are_unknown(
@@ -360,6 +364,7 @@ def test_one_motion_that_is_no_symbol_costs_the_message() -> None:
   assert messages(events) == []
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('seed', range(2))
 def test_a_random_walk_is_unknown(seed: int) -> None:
   rng = np.random.RandomState(seed)
@@ -415,7 +420,7 @@ def test_its_numbers_can_be_changed_and_no_others() -> None:
     receivers.make('klt:max_angle_deg=30')
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize('sigma', [0.0, 5.0, 10.0])
 @pytest.mark.parametrize(
   ('distance_m', 'angle_deg'),
@@ -433,7 +438,7 @@ def test_the_envelope(
   assert messages(events) == [bits]
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_camera_that_freezes_after_the_last_gesture_gives_no_message() -> (
   None
 ):

@@ -44,6 +44,7 @@ def compiled(
   return physics, np.array([pose.position_m for pose in poses])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(('layout', 'count'), LAYOUTS)
 def test_top_and_overview_show_everybody_and_the_whole_dance(
   layout: layouts.Layout, count: int
@@ -56,6 +57,7 @@ def test_top_and_overview_show_everybody_and_the_whole_dance(
     assert np.abs(project(physics, camera, shown_m)).max() < 1
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(('layout', 'count'), LAYOUTS)
 def test_vehicles_fill_the_view_from_the_top(
   layout: layouts.Layout, count: int
@@ -71,6 +73,7 @@ def test_the_top_looks_straight_down_with_y_up() -> None:
   np.testing.assert_allclose(axes, np.eye(3), atol=1e-12)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(('layout', 'count'), LAYOUTS[:4])
 def test_the_performer_sees_all_of_its_audience(
   layout: layouts.Layout, count: int
@@ -88,6 +91,7 @@ def test_the_performer_does_not_hide_its_audience() -> None:
   assert y[0] < y[1:].min() - 0.2
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('camera', ['top', 'overview', 'performer_view'])
 def test_every_view_renders(camera: str) -> None:
   physics, _ = compiled(layouts.Arc(), 3)

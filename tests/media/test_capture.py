@@ -34,6 +34,7 @@ def small(tmp_path_factory: pytest.TempPathFactory) -> bytes:
   return write(path, [image, moved, moved]).read_bytes()
 
 
+@pytest.mark.slow
 def test_every_image_and_time_comes_back_exactly(
   clip: object, tmp_path: pathlib.Path
 ) -> None:
@@ -103,6 +104,7 @@ def test_it_holds_the_images_that_a_receiver_took_and_no_more(
   assert max(images) == 0
 
 
+@pytest.mark.slow
 def test_images_that_come_again_are_held_once(tmp_path: pathlib.Path) -> None:
   spoils = sensor.Sensor(dropped_share=0.5, late_frames=2)
   scene = scenario.Scenario(observers=1, duration_s=1.0, sensor=spoils)
@@ -114,6 +116,7 @@ def test_images_that_come_again_are_held_once(tmp_path: pathlib.Path) -> None:
   assert 5 < len(times_s) < 20
 
 
+@pytest.mark.slow
 @settings(max_examples=60, deadline=None)
 @given(data=st.data())
 def test_a_changed_byte_anywhere_is_noticed(

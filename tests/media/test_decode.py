@@ -69,6 +69,7 @@ def test_a_replay_gives_the_online_events_byte_for_byte(
   assert work.message == expected
 
 
+@pytest.mark.slow
 def test_a_replay_by_another_receiver_is_told_apart(recorded: object) -> None:
   path = recorded.folder / 'raw' / 'observer_1.capture'
   names = ['klt', 'klt:max_rmse=0.0001']
@@ -84,6 +85,7 @@ def test_a_replay_by_another_receiver_is_told_apart(recorded: object) -> None:
   assert 'UNKNOWN' in start
 
 
+@pytest.mark.slow
 def test_images_that_others_are_than_those_of_the_message_are_noticed(
   copied: pathlib.Path, recorded: object
 ) -> None:
@@ -112,6 +114,7 @@ def test_the_command_replays_a_folder_with_receivers_side_by_side(
   assert 'klt:min_margin=0.6: no message' in child.stdout
 
 
+@pytest.mark.slow
 def test_the_command_notices_an_event_log_that_was_changed(
   waggle: Waggle, copied: pathlib.Path
 ) -> None:
@@ -124,7 +127,7 @@ def test_the_command_notices_an_event_log_that_was_changed(
   assert '16 of 17 events are the same, 17 now' in child.stdout
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_recording_is_read_in_the_language_of_a_run(
   recorded: object, video: Callable[..., pathlib.Path], waggle: Waggle
 ) -> None:
@@ -143,8 +146,8 @@ def test_a_recording_is_read_in_the_language_of_a_run(
   ('name', 'codec'),
   [
     ('x.webm', 'VP80'),
-    pytest.param('x.mp4', 'mp4v', marks=pytest.mark.slow),
-    pytest.param('x.mkv', 'FFV1', marks=pytest.mark.slow),
+    pytest.param('x.mp4', 'mp4v', marks=pytest.mark.long),
+    pytest.param('x.mkv', 'FFV1', marks=pytest.mark.long),
   ],
 )
 def test_a_recording_in_any_container_reads_as_the_images_did(
@@ -173,6 +176,7 @@ def shifted(image: np.ndarray) -> np.ndarray:
   return cv2.copyMakeBorder(image, 60, 30, 150, 10, cv2.BORDER_REPLICATE)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
   'part',
   [Part(anchor_px=(470.0, 300.0)), Part(roi=(150, 60, 640, 480))],
@@ -186,6 +190,7 @@ def test_a_target_away_from_the_middle_is_found(
   assert decoded(path)[0] != WANTED
 
 
+@pytest.mark.slow
 def test_a_recording_in_slow_motion_is_read_at_its_true_speed(
   dance: Callable[..., pathlib.Path],
 ) -> None:
@@ -195,6 +200,7 @@ def test_a_recording_in_slow_motion_is_read_at_its_true_speed(
   assert work.last_s == pytest.approx(15.8, abs=0.1)
 
 
+@pytest.mark.slow
 def test_only_the_part_that_was_asked_for_is_read(
   dance: Callable[..., pathlib.Path],
 ) -> None:
@@ -204,6 +210,7 @@ def test_only_the_part_that_was_asked_for_is_read(
   assert work.chain.images == pytest.approx(6.0 * 25, abs=2)
 
 
+@pytest.mark.slow
 def test_times_come_from_the_container_not_from_a_rate(
   clip: object, tmp_path: pathlib.Path
 ) -> None:
@@ -230,6 +237,7 @@ def test_times_come_from_the_container_not_from_a_rate(
   assert decoded(path)[0] == WANTED
 
 
+@pytest.mark.slow
 def test_an_annotated_copy_shows_what_was_read_without_gl(
   waggle: Waggle,
   dance: Callable[..., pathlib.Path],
@@ -250,7 +258,7 @@ def test_an_annotated_copy_shows_what_was_read_without_gl(
   assert '`annotate` must be a new file' in again.stderr
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize('receiver', receivers.RECEIVERS)
 @pytest.mark.parametrize(
   'name',
@@ -273,7 +281,7 @@ def test_replays_of_the_papers_cases_are_the_online_runs(
     assert reader.differences(work, tmp_path, path.stem) == ''
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize(
   ('name', 'codec', 'options'),
   [
@@ -408,6 +416,7 @@ def test_what_is_left_of_a_cut_video_can_be_read(
   assert work.chain.images == pytest.approx(25 * end_s, abs=2)
 
 
+@pytest.mark.slow
 def test_huge_pictures_are_refused_without_the_memory_for_them(
   video: Callable[..., pathlib.Path],
 ) -> None:
@@ -475,6 +484,7 @@ def test_too_long_a_recording_asks_for_a_part(
   assert decoded(tiny(), Part(end_s=1.5))[1].chain.images > 30
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
   ('arguments', 'line'),
   [
@@ -518,6 +528,7 @@ def test_only_pixels_grow_with_the_focal_length(factor: float) -> None:
   assert other.recognition.max_rmse == paper.recognition.max_rmse
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
   'name', sorted({*receivers.RECEIVERS} - {'joint', 'learned'})
 )

@@ -16,6 +16,7 @@ from waggle_tasks.experiments.video import shots
 Waggle = Callable[..., subprocess.CompletedProcess[str]]
 
 
+@pytest.mark.slow
 def test_each_gesture_shows_the_performer_all_along_its_track() -> None:
   scene = scenario.Scenario()
   sent = shots.firsts(
@@ -43,7 +44,7 @@ def test_each_gesture_shows_the_performer_all_along_its_track() -> None:
   assert (yellow < 40).sum() > 4 * 50
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_the_command_makes_pictures_small_enough_to_commit(
   waggle: Waggle, tmp_path: pathlib.Path
 ) -> None:
@@ -54,6 +55,7 @@ def test_the_command_makes_pictures_small_enough_to_commit(
   assert max(sizes.values()) < 300_000
 
 
+@pytest.mark.slow
 def test_the_envelope_of_a_sweep_is_drawn_without_gl(
   waggle: Waggle, tmp_path: pathlib.Path, no_gl: dict[str, str]
 ) -> None:

@@ -147,6 +147,7 @@ def test_interlaced_pictures_are_right(
   assert all(80 < image.mean() < 100 for image in images)
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures('no_pyav')
 @pytest.mark.parametrize('kind', [*INTERLACED.values(), AV1])
 def test_what_opencv_cannot_decode_names_the_line_that_mends_it(
@@ -162,6 +163,7 @@ def test_av1_is_read(tmp_path: pathlib.Path) -> None:
   assert_whole(made(tmp_path, **AV1))
 
 
+@pytest.mark.slow
 def test_longer_sound_is_a_note(waggle: Waggle, tmp_path: pathlib.Path) -> None:
   path = made(tmp_path, 'x.mkv', sound_s=10.0)
   child = waggle('decode', str(path))
@@ -416,6 +418,7 @@ def test_a_colon_in_a_name_is_no_protocol(
   assert_whole(pathlib.Path('18:30.mp4'))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('ending', ['webm', 'mp4'])
 def test_an_annotated_copy_may_have_a_colon_in_its_name(
   ending: str, waggle: Waggle, tmp_path: pathlib.Path
@@ -426,6 +429,7 @@ def test_an_annotated_copy_may_have_a_colon_in_its_name(
   assert len(read(tmp_path / f'18:31.{ending}')[1]) > 30
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('ending', ['webm', 'mp4'])
 def test_a_full_disk_loses_the_copy_and_not_what_was_read(
   ending: str, tmp_path: pathlib.Path

@@ -155,8 +155,9 @@ class Source:
     pass
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
-  'name', ['joint', pytest.param('klt', marks=pytest.mark.slow)]
+  'name', ['joint', pytest.param('klt', marks=pytest.mark.long)]
 )
 def test_a_film_that_begins_in_motion_is_said_to(name: str, film: Film) -> None:
   agreed = dataclasses.replace(film.scene.agreement, language=None)
@@ -268,6 +269,7 @@ def test_a_camera_that_is_not_there_is_refused(
     live_camera.LiveCamera(number)
 
 
+@pytest.mark.slow
 def test_the_command_says_that_there_is_no_camera(waggle: Waggle) -> None:
   child = waggle('decode', '--camera=63')
   assert child.returncode == 2

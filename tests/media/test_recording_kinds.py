@@ -67,6 +67,7 @@ def kinds(names: Collection[str] = ()) -> object:
   return pytest.mark.parametrize('kind', chosen, ids=lambda kind: kind.name)
 
 
+@pytest.mark.slow
 @kinds(TELLING)
 def test_a_telling_kind_of_recording_gives_the_message(
   kind: kit.Kind, fast: kit.Dance, tmp_path: pathlib.Path
@@ -74,6 +75,7 @@ def test_a_telling_kind_of_recording_gives_the_message(
   assert unread(kind, fast, tmp_path, TELLING[kind.name]) == {}
 
 
+@pytest.mark.slow
 @kinds(
   (
     'gif-10hz.gif', 'h264-crf28.mp4', 'h264-12p5hz.mp4', 'h264-50hz.mp4',
@@ -86,7 +88,7 @@ def test_a_recording_of_levels_gives_the_message(
   assert unread(kind, swift, tmp_path, ['joint']) == {}
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @kinds()
 def test_every_kind_of_recording_gives_the_message(
   kind: kit.Kind, papers: kit.Dance, tmp_path: pathlib.Path

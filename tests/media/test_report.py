@@ -96,6 +96,7 @@ def test_a_page_needs_nothing_but_files_beside_it(
   assert 'url(' not in page.replace('url(#stripes)', '')
 
 
+@pytest.mark.slow
 def test_the_command_makes_the_same_page_again_without_gl(
   waggle: Waggle, copied: pathlib.Path, page: str, no_gl: dict[str, str]
 ) -> None:
@@ -265,6 +266,7 @@ def test_videos_of_several_pages_can_be_chosen(copied: pathlib.Path) -> None:
   ]  # fmt: skip
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('name', DATA)
 def test_a_missing_file_is_named(
   waggle: Waggle, copied: pathlib.Path, name: str
@@ -478,6 +480,7 @@ def suite(tmp_path: pathlib.Path) -> pathlib.Path:
   return tmp_path
 
 
+@pytest.mark.slow
 def test_a_suites_page_shows_what_differs_first_and_links_every_run(
   waggle: Waggle, suite: pathlib.Path, no_gl: dict[str, str]
 ) -> None:

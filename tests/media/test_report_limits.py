@@ -66,6 +66,7 @@ def runs(
   return made
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('name', NAMES[:2])
 def test_an_absolute_track_has_limits_of_its_own(
   name: str, runs: dict[str, Run]
@@ -88,6 +89,7 @@ def test_an_absolute_track_has_limits_of_its_own(
     assert foreign not in run.words
 
 
+@pytest.mark.slow
 def test_a_track_by_flow_has_the_papers_with_any_templates(
   runs: dict[str, Run],
 ) -> None:
@@ -103,6 +105,7 @@ def test_a_track_by_flow_has_the_papers_with_any_templates(
   assert 'f-b ratio' not in words
 
 
+@pytest.mark.slow
 def test_changed_numbers_are_those_of_the_page(
   runs: dict[str, Run], tmp_path: pathlib.Path
 ) -> None:
@@ -122,6 +125,7 @@ def test_changed_numbers_are_those_of_the_page(
   assert f'{least_px:.3g} (0.5 widths)' in scores
 
 
+@pytest.mark.slow
 def test_what_a_receiver_does_not_tell_is_left_out(
   runs: dict[str, Run],
 ) -> None:
@@ -137,6 +141,7 @@ def test_what_a_receiver_does_not_tell_is_left_out(
   assert 'RMSE' not in figures
 
 
+@pytest.mark.slow
 def test_widths_are_kept_with_the_tracks(runs: dict[str, Run]) -> None:
   for name, run in runs.items():
     kept = traces.load(run.folder / 'traces.npz')['observer_1'].motions
@@ -148,6 +153,7 @@ def test_widths_are_kept_with_the_tracks(runs: dict[str, Run]) -> None:
     assert all((width is None) == name.startswith('klt') for width in known)
 
 
+@pytest.mark.slow
 def test_without_final_null_the_message_stands_and_the_group_fails(
   runs: dict[str, Run],
 ) -> None:
@@ -164,6 +170,7 @@ def test_without_final_null_the_message_stands_and_the_group_fails(
   assert whole[-1][1].symbols == last.symbols
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('width', [1280, 820])
 @pytest.mark.parametrize('name', NAMES)
 def test_no_limit_overlaps_another_word(

@@ -47,6 +47,7 @@ def page(run: tuple[pathlib.Path, object]) -> str:
   return (run[0] / document.NAME).read_text(encoding='utf-8')
 
 
+@pytest.mark.slow
 def test_a_page_tells_each_level_that_was_sent_and_read(page: str) -> None:
   for number, level in enumerate('0276'):
     assert f'sent level {level}, ' in page, number
@@ -56,6 +57,7 @@ def test_a_page_tells_each_level_that_was_sent_and_read(page: str) -> None:
   assert 'first null' not in page
 
 
+@pytest.mark.slow
 def test_a_page_has_the_word_and_how_clear_it_is(
   page: str, run: tuple[pathlib.Path, rollout_lib.Rollout]
 ) -> None:
@@ -72,11 +74,13 @@ def test_a_page_has_the_word_and_how_clear_it_is(
   assert 'no track' not in page
 
 
+@pytest.mark.slow
 def test_a_page_draws_heights_over_the_levels(page: str) -> None:
   assert 'dashed: levels 0 to 7, from below' in page
   assert 'gesture 1 from the front' not in page
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('width', [1280, 820])
 def test_no_words_overlap(
   browser: chromium.Browser,
@@ -92,6 +96,7 @@ def test_no_words_overlap(
   assert 'sent level 2' in now
 
 
+@pytest.mark.slow
 def test_a_strip_shows_what_was_read_below_what_was_sent(
   run: tuple[pathlib.Path, rollout_lib.Rollout],
 ) -> None:
@@ -116,6 +121,7 @@ def test_a_strip_shows_what_was_read_below_what_was_sent(
   assert spans[0][-1] == pytest.approx(spans[1][-1], abs=2 * a_frame)
 
 
+@pytest.mark.slow
 def test_a_film_is_read_in_the_language_of_its_run(
   run: tuple[pathlib.Path, object], waggle: Waggle
 ) -> None:

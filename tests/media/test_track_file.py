@@ -124,6 +124,7 @@ def written(
   return path
 
 
+@pytest.mark.slow
 def test_the_command_reads_tracks_and_says_why_it_does_not(
   waggle: Waggle, path: pathlib.Path
 ) -> None:
@@ -149,6 +150,7 @@ BAD = {
 }
 
 
+@pytest.mark.slow
 def test_flags_that_say_nothing_of_a_track_are_refused(
   ask: Callable[..., list], path: pathlib.Path
 ) -> None:
@@ -159,6 +161,7 @@ def test_flags_that_say_nothing_of_a_track_are_refused(
     assert (status, expected in said) == (2, True), said
 
 
+@pytest.mark.slow
 def test_the_command_reads_mocom_with_nulls_that_its_gaps_hold(
   waggle: Waggle, path: pathlib.Path
 ) -> None:

@@ -146,6 +146,7 @@ def test_symbols_and_track_appear_as_they_are_read(recorded: object) -> None:
   assert max(trails) < 0.0002
 
 
+@pytest.mark.slow
 def test_filming_changes_no_event(
   short: dict[str, object], tmp_path: pathlib.Path
 ) -> None:
@@ -158,6 +159,7 @@ def test_filming_changes_no_event(
   assert [*writer.event_lines(filmed)] == lines
 
 
+@pytest.mark.slow
 def test_many_observers_get_a_video_a_page(tmp_path: pathlib.Path) -> None:
   scene = scenario.Scenario(
     control='no_send', observers=6, half_span_deg=60.0, duration_s=0.2
@@ -168,6 +170,7 @@ def test_many_observers_get_a_video_a_page(tmp_path: pathlib.Path) -> None:
   assert names == ['composite-2.webm', 'composite.webm']
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('view', ['observer_1', 'performer', 'top', 'overview'])
 def test_a_single_view_without_marks_is_the_image_itself(
   view: str, tmp_path: pathlib.Path
@@ -201,6 +204,7 @@ def test_the_view_from_the_top_shows_every_vehicle() -> None:
   environment.close()
 
 
+@pytest.mark.slow
 def test_a_page_draws_the_same_moment_the_same_way(recorded: object) -> None:
   scene = recorded.scene
   drawn = []
@@ -295,6 +299,7 @@ def test_a_single_page_has_room_for_its_title_and_foot() -> None:
   assert height > 520
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
   ('flag', 'line'),
   [

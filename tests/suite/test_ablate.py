@@ -115,6 +115,7 @@ def ablate(waggle: Waggle, tmp_path: pathlib.Path) -> Waggle:
   return functools.partial(waggle, 'ablate', *case, cwd=tmp_path)
 
 
+@pytest.mark.slow
 def test_an_ablation_is_a_suite_of_its_own_and_is_run_once(
   ablate: Waggle, tmp_path: pathlib.Path
 ) -> None:
@@ -136,6 +137,7 @@ def test_an_ablation_is_a_suite_of_its_own_and_is_run_once(
   assert seal.stat().st_mtime_ns == written
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
   ('flag', 'error'),
   [
@@ -150,6 +152,7 @@ def test_bad_input_is_one_line(ablate: Waggle, flag: str, error: str) -> None:
   assert re.match(f'waggle ablate: {error}', done.stderr)
 
 
+@pytest.mark.slow
 def test_what_a_receiver_has_no_time_for_is_refused_before_it_flies(
   waggle: Waggle, tmp_path: pathlib.Path
 ) -> None:

@@ -85,6 +85,7 @@ def lines(path: pathlib.Path) -> list[str]:
   return path.read_text(encoding='utf-8').splitlines()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('workers', [1, 2, 5])
 def test_every_job_is_done_once_and_reports_before_it_is_done(
   jobs: types.ModuleType, workers: int
@@ -99,6 +100,7 @@ def test_every_job_is_done_once_and_reports_before_it_is_done(
   assert not multiprocessing.active_children()
 
 
+@pytest.mark.slow
 def test_one_worker_does_jobs_in_their_order(jobs: types.ModuleType) -> None:
   todo = [pool.Job(name, jobs.double, (1,)) for name in 'cab']
   assert [*finished(list(pool.run(todo, 1)))] == ['c', 'a', 'b']
@@ -108,6 +110,7 @@ def test_nothing_to_do_is_done_at_once() -> None:
   assert list(pool.run([], 2)) == []
 
 
+@pytest.mark.slow
 def test_a_worker_that_dies_is_replaced_and_its_job_tried_again(
   jobs: types.ModuleType, tmp_path: pathlib.Path
 ) -> None:
@@ -122,6 +125,7 @@ def test_a_worker_that_dies_is_replaced_and_its_job_tried_again(
   assert first != second
 
 
+@pytest.mark.slow
 def test_a_job_that_kills_every_worker_is_given_up_by_name(
   jobs: types.ModuleType, tmp_path: pathlib.Path
 ) -> None:
@@ -135,6 +139,7 @@ def test_a_job_that_kills_every_worker_is_given_up_by_name(
   assert not multiprocessing.active_children()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('torn', [False, True])
 def test_a_worker_that_leaves_even_within_a_message_is_told_by_name(
   torn: bool, jobs: types.ModuleType
@@ -147,6 +152,7 @@ def test_a_worker_that_leaves_even_within_a_message_is_told_by_name(
   assert not multiprocessing.active_children()
 
 
+@pytest.mark.slow
 def test_a_job_that_raises_is_given_up_with_its_reason(
   jobs: types.ModuleType,
 ) -> None:
@@ -157,6 +163,7 @@ def test_a_job_that_raises_is_given_up_with_its_reason(
   assert not multiprocessing.active_children()
 
 
+@pytest.mark.slow
 def test_a_silent_worker_is_replaced_and_a_busy_one_is_not(
   jobs: types.ModuleType, tmp_path: pathlib.Path
 ) -> None:
@@ -172,6 +179,7 @@ def test_a_silent_worker_is_replaced_and_a_busy_one_is_not(
   assert len(lines(busy)) == 1
 
 
+@pytest.mark.slow
 def test_a_job_that_always_hangs_is_given_up_with_its_reason(
   jobs: types.ModuleType, tmp_path: pathlib.Path
 ) -> None:
@@ -184,6 +192,7 @@ def test_a_job_that_always_hangs_is_given_up_with_its_reason(
   assert not multiprocessing.active_children()
 
 
+@pytest.mark.slow
 def test_an_error_of_who_listens_ends_the_workers(
   jobs: types.ModuleType, tmp_path: pathlib.Path
 ) -> None:

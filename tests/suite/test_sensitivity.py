@@ -94,6 +94,7 @@ def sensitivity(waggle: Waggle, tmp_path: pathlib.Path) -> Waggle:
   return functools.partial(waggle, 'sensitivity', *case, cwd=tmp_path)
 
 
+@pytest.mark.slow
 def test_a_variant_is_a_suite_of_its_own(
   sensitivity: Waggle, tmp_path: pathlib.Path
 ) -> None:

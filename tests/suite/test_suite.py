@@ -18,6 +18,7 @@ def suite(waggle: Waggle, tmp_path: pathlib.Path) -> Waggle:
   return functools.partial(waggle, 'suite', cwd=tmp_path)
 
 
+@pytest.mark.slow
 def test_a_control_of_the_paper_is_flown_and_set_beside_it(
   suite: Waggle, tmp_path: pathlib.Path
 ) -> None:
@@ -52,6 +53,7 @@ def test_a_control_of_the_paper_is_flown_and_set_beside_it(
   )
 
 
+@pytest.mark.slow
 def test_flags_of_a_scenario_change_every_case(
   suite: Waggle, tmp_path: pathlib.Path
 ) -> None:
@@ -74,6 +76,7 @@ def test_flags_of_a_scenario_change_every_case(
   assert '`wind_mps` must not be given with `dynamics`' in refused.stderr
 
 
+@pytest.mark.slow
 def test_a_suite_of_ones_own_is_a_json_file(
   suite: Waggle, tmp_path: pathlib.Path
 ) -> None:
@@ -98,6 +101,7 @@ def test_a_suite_of_ones_own_is_a_json_file(
   ] * 2
 
 
+@pytest.mark.slow
 def test_workers_that_cannot_render_say_so_in_one_line(
   suite: Waggle, tmp_path: pathlib.Path
 ) -> None:
@@ -110,6 +114,7 @@ def test_workers_that_cannot_render_say_so_in_one_line(
   assert said.endswith('mend it: export MUJOCO_GL=egl')
 
 
+@pytest.mark.slow
 def test_two_finished_folders_are_set_side_by_side_without_gl(
   suite: Waggle, reference: object, no_gl: dict[str, str]
 ) -> None:

@@ -84,6 +84,7 @@ def test_a_page_is_no_result(finished: object) -> None:
   assert suite_case.flaw(home, seal['identity']) is None
 
 
+@pytest.mark.slow
 def test_damaged_results_are_named_and_run_anew_and_others_kept(
   finished: object, reference: object, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -137,6 +138,7 @@ def test_an_identity_follows_all_that_decides_a_result(
   assert len({first, *others}) == 1 + len(others)
 
 
+@pytest.mark.slow
 def test_results_of_other_sources_are_run_anew_with_a_notice(
   blink: object,
   blink_reference: object,
@@ -155,6 +157,7 @@ def test_results_of_other_sources_are_run_anew_with_a_notice(
   assert blink.results() == blink_reference.results()
 
 
+@pytest.mark.slow
 def test_sources_that_change_meanwhile_are_an_error(
   fresh_blink: object, monkeypatch: pytest.MonkeyPatch
 ) -> None:

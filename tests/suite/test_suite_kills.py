@@ -39,7 +39,7 @@ def launched(fresh: object, session: Session) -> Iterator[Launched]:
   process.wait()
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_worker_killed_in_mid_case_leaves_no_trace_in_the_results(
   launched: Launched,
   fresh: object,
@@ -63,7 +63,7 @@ def test_a_worker_killed_in_mid_case_leaves_no_trace_in_the_results(
   'number',
   [signal.SIGTERM, signal.SIGHUP],
 )
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_suite_that_is_asked_to_end_leaves_no_drafts(
   launched: Launched,
   fresh: object,
@@ -79,6 +79,7 @@ def test_a_suite_that_is_asked_to_end_leaves_no_drafts(
   assert left == {'.lock', 'cases'}
 
 
+@pytest.mark.slow
 def test_a_suite_killed_in_its_middle_ends_as_if_it_had_not_been(
   launched: Launched,
   fresh: object,
@@ -132,6 +133,7 @@ def file_limit(
   limit(None)
 
 
+@pytest.mark.slow
 def test_a_disk_full_in_a_case_is_one_line_and_the_next_run_ends_well(
   fresh_blink: object,
   blink_reference: object,

@@ -52,7 +52,7 @@ def moved_m(tmp_path: pathlib.Path, case: str, observer: str) -> np.ndarray:
     return file[observer] - file[observer][0]
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_row_that_passes_and_one_that_fails_end_to_end(
   run: Run, tmp_path: pathlib.Path
 ) -> None:
@@ -83,7 +83,7 @@ def test_a_row_that_passes_and_one_that_fails_end_to_end(
     assert f'  span-45, {outcome["observer"]}: {failure}' in wide['stdout']
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_every_row_gives_what_the_paper_published(
   run: Run, tmp_path: pathlib.Path
 ) -> None:

@@ -80,6 +80,7 @@ def test_a_second_run_flies_nothing_and_changes_nothing(
   assert 'anew' not in capsys.readouterr().out
 
 
+@pytest.mark.slow
 def test_serial_and_parallel_runs_give_the_same_bytes(
   reference: object, fresh: object
 ) -> None:
@@ -87,6 +88,7 @@ def test_serial_and_parallel_runs_give_the_same_bytes(
   assert fresh.results() == reference.results()
 
 
+@pytest.mark.slow
 def test_a_part_of_the_suite_is_kept_by_the_whole(
   reference: object, fresh: object
 ) -> None:
@@ -137,6 +139,7 @@ def test_a_file_in_the_place_of_the_folder_is_refused(
 # The progress bar.
 
 
+@pytest.mark.slow
 def test_a_case_reports_exactly_the_frames_that_it_simulates(
   tmp_path: pathlib.Path, reference: object
 ) -> None:
@@ -156,6 +159,7 @@ def test_a_case_reports_exactly_the_frames_that_it_simulates(
   assert told == pytest.approx({'silent': 1.0, 'pair': 4.0})
 
 
+@pytest.mark.slow
 def test_a_case_that_is_tried_again_does_not_upset_the_bar(
   fresh_blink: object,
   blink_reference: object,
@@ -179,6 +183,7 @@ def test_a_case_that_is_tried_again_does_not_upset_the_bar(
   assert fresh_blink.results() == blink_reference.results()
 
 
+@pytest.mark.slow
 def test_the_bar_names_the_case_and_ends_with_all_seconds(
   fresh: object, capsys: pytest.CaptureFixture[str]
 ) -> None:

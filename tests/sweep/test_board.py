@@ -160,6 +160,7 @@ def _run(
   return rows
 
 
+@pytest.mark.slow
 def test_a_receiver_of_ones_own_is_on_the_board(flown: Flown) -> None:
   dance, film = sorted(flown.board.results, key=lambda each: each.tier)
   assert (dance.delivered, dance.wrong, dance.moved) == (True, 0, 0)
@@ -172,6 +173,7 @@ def test_a_receiver_of_ones_own_is_on_the_board(flown: Flown) -> None:
   assert len(flown.board.receivers['own_stub:Stub']) == 64
 
 
+@pytest.mark.slow
 def test_what_was_flown_is_not_flown_again_and_a_film_is_kept(
   flown: Flown,
 ) -> None:
@@ -183,6 +185,7 @@ def test_what_was_flown_is_not_flown_again_and_a_film_is_kept(
   assert [*(flown.folder / board_study.FILMS).iterdir()] == films
 
 
+@pytest.mark.slow
 def test_its_page_is_made_again_from_its_file(
   flown: Flown, waggle: Waggle
 ) -> None:
@@ -335,6 +338,7 @@ def test_boards_that_do_not_go_together_are_refused(
     board_file.merged({'one': a, 'two': b})
 
 
+@pytest.mark.slow
 def test_the_command_merges_folders(
   waggle: Waggle, tmp_path: pathlib.Path
 ) -> None:
@@ -357,6 +361,7 @@ def test_the_command_merges_folders(
   assert 'must not exist' in child.stderr
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
   ('line', 'said'),
   [

@@ -102,6 +102,7 @@ def listening(path: pathlib.Path, wait_until: Callable[..., None]) -> str:
   return found[0]
 
 
+@pytest.mark.slow
 @needs_dask
 def test_a_cluster_gives_the_same_bytes_as_one_worker(
   scheduler: pathlib.Path,
@@ -123,7 +124,7 @@ def fly(*words: str, **more: object) -> subprocess.CompletedProcess[str]:
   )  # fmt: skip
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @needs_dask
 def test_a_suite_leaves_the_same_run_folders_from_a_cluster(
   scheduler: pathlib.Path,
@@ -162,6 +163,7 @@ class Own(receiver.Receiver):
 """
 
 
+@pytest.mark.slow
 @needs_dask
 def test_workers_import_a_receiver_of_ones_own_by_its_name(
   dask: Callable[..., object],
@@ -178,6 +180,7 @@ def test_workers_import_a_receiver_of_ones_own_by_its_name(
   assert json.loads(row)['receiver'] == 'own_on_cluster:Own'
 
 
+@pytest.mark.slow
 @needs_dask
 @pytest.mark.parametrize(
   ('scheduler', 'said'),
@@ -262,6 +265,7 @@ def listens(
       each.close()
 
 
+@pytest.mark.slow
 @needs_dask
 @pytest.mark.parametrize(
   ('answer', 'said'),
@@ -358,6 +362,7 @@ except errors.WaggleError as error:
 """
 
 
+@pytest.mark.slow
 @needs_dask
 @pytest.mark.parametrize(
   ('victim', 'number', 'said'),
@@ -366,13 +371,13 @@ except errors.WaggleError as error:
       'scheduler',
       signal.SIGKILL,
       'the connection to it is lost',
-      marks=pytest.mark.slow,
+      marks=pytest.mark.long,
     ),
     pytest.param(
       'scheduler',
       signal.SIGSTOP,
       'for 1 s what listens there answers nothing',
-      marks=pytest.mark.slow,
+      marks=pytest.mark.long,
     ),
     ('worker', signal.SIGKILL, 'for 1 s it has no workers'),
   ],
@@ -474,7 +479,7 @@ def test_a_worker_of_other_versions_is_refused(digest: str) -> None:
     _work(digest, versions)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_worker_of_another_receiver_is_refused(
   digest: str, tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

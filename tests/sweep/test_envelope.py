@@ -184,6 +184,7 @@ def test_a_fit_that_cannot_be_is_said_to_be_none(make: object) -> None:
   )
 
 
+@pytest.mark.slow
 def test_the_fit_says_where_success_falls_below_90_percent(
   make: object,
 ) -> None:
@@ -270,6 +271,7 @@ def test_axes_have_units(factor: str | None, title: str) -> None:
   assert heat.axis(factor) == title
 
 
+@pytest.mark.slow
 def test_pictures_and_page_are_drawn_the_same_twice(
   rows: list[case_rows.SweepRow], tmp_path: pathlib.Path
 ) -> None:

@@ -368,6 +368,7 @@ def test_an_airtime_that_holds_no_message_has_no_share(rows: list[Row]) -> None:
   assert cells(line)[-2:] == ['-', '-']
 
 
+@pytest.mark.slow
 def test_the_page_and_the_picture_follow_from_the_rows(
   rows: list[Row], tmp_path: pathlib.Path
 ) -> None:
@@ -421,6 +422,7 @@ def test_codes_are_counted_on_a_channel() -> None:
 # As its user sees it.
 
 
+@pytest.mark.slow
 def test_a_link_is_flown_and_goes_on_where_it_was_ended(
   here: Waggle, tmp_path: pathlib.Path
 ) -> None:

@@ -21,6 +21,7 @@ SECOND = [
 ]
 
 
+@pytest.mark.slow
 def test_a_tape_plays_the_images_that_an_observer_saw(
   short: dict[str, object], hover: Callable[..., list[np.ndarray]]
 ) -> None:
@@ -85,6 +86,7 @@ def test_each_number_draws_another_exposure_and_always_the_same() -> None:
     assert kind in text
 
 
+@pytest.mark.slow
 def test_a_sweep_of_replays_counts_every_exposure(
   here: Waggle, tmp_path: pathlib.Path
 ) -> None:

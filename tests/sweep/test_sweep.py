@@ -16,6 +16,7 @@ Waggle = Callable[..., subprocess.CompletedProcess[str]]
 BRIEF = ('--control=no_send', '--duration_s=0.04', '--observers=1')
 
 
+@pytest.mark.slow
 def test_a_grid_is_flown_and_mapped(
   here: Waggle, tmp_path: pathlib.Path
 ) -> None:
@@ -45,6 +46,7 @@ def test_a_grid_is_flown_and_mapped(
   assert (folder / 'index.html').exists()
 
 
+@pytest.mark.slow
 def test_a_summary_flies_nothing_and_needs_no_gl(
   here: Waggle, told: object, no_gl: dict[str, str]
 ) -> None:
@@ -62,6 +64,7 @@ def waggle_folder(told: object) -> pathlib.Path:
   return told.folder.parent / 'copy'
 
 
+@pytest.mark.slow
 def test_several_sweeps_make_one_map_in_a_new_folder(
   here: Waggle, tmp_path: pathlib.Path, make: object
 ) -> None:

@@ -73,6 +73,7 @@ def test_another_base_seed_gives_other_seeds_and_payloads(make: Make) -> None:
   assert payloads[0] != payloads[1]
 
 
+@pytest.mark.slow
 def test_random_payloads_are_about_evenly_spread(make: Make) -> None:
   cases = make.cases(repeats=640, payload='random')
   counts = [0] * 64

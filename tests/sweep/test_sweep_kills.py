@@ -25,7 +25,7 @@ def command(folder: pathlib.Path, workers: int) -> list[str]:
   return [sys.executable, '-m', module, *given]
 
 
-@pytest.fixture(params=[pytest.param(1, marks=pytest.mark.slow), 2])
+@pytest.fixture(params=[pytest.param(1, marks=pytest.mark.long), 2])
 def launched(
   request: pytest.FixtureRequest, sweep: object, session: Session
 ) -> Iterator[Launched]:
@@ -48,6 +48,7 @@ def tables(sweep: object) -> dict[str, bytes]:
   return {name: (sweep.folder / name).read_bytes() for name in names}
 
 
+@pytest.mark.slow
 def test_a_killed_sweep_ends_as_if_it_had_not_been(
   launched: Launched,
   sweep: object,
@@ -71,7 +72,7 @@ def test_a_killed_sweep_ends_as_if_it_had_not_been(
   assert tables(sweep) == tables(flown)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_killed_worker_leaves_no_trace_in_the_results(
   launched: Launched,
   sweep: object,

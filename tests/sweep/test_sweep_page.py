@@ -136,6 +136,7 @@ def test_without_matplotlib_all_but_the_pictures_is_written(
   assert names == {'summary.txt', 'index.html'}
 
 
+@pytest.mark.slow
 def test_a_whole_sweeps_page_holds_its_provenance(
   told: object, tmp_path: pathlib.Path
 ) -> None:
