@@ -18,8 +18,9 @@ class Reading(group.Group):
       how far that is from it: less is an erasure.
     max_misfit: How far a symbol may be from what was seen, as a share of the
       squared distance to the next one: 0.25 is half-way.
-    max_worst: The same of any one level: a word of which one is another level
-      is none, even if a code would mend it and a wander would explain it.
+    max_worst: The same of any one symbol: a word of which one is another level
+      is none, even if a code would mend it and a wander would explain it, nor
+      one of which a gesture was broken off.
     max_end: The same of END and the rest after it, beside a rest without END.
     max_rest: How far from the hover point the dancer may rest before START and
       after END, by what was seen of the frame between, as a share of how far

@@ -20,8 +20,9 @@ class Reading:
     misfit: How far its strokes are from what was seen of them, as a share of
       how far the nearest other stroke is from each: 0.25 where everything was
       half-way between two.
-    worst: The same of the level that fits worst, of those that were seen; 0
-      for gestures.
+    worst: The same of the symbol that fits worst, of those that were seen; of
+      a gesture as a share of its own size, if that is less: half of one is
+      none.
     end: How far END and the rest after it are from what was seen, as a share
       of how far a dancer would be that stayed where it was, or one level
       beside.
@@ -55,16 +56,19 @@ def judge(
   """What a word of a frame stands on, from a view, by poses."""
   shapes, count = frame.shapes, frame.count
   states = [0, *(int(shapes.after[symbol]) for symbol in word)]
+  levels = len(shapes.ends[view]) > 1
   misfit = near = seen_s = worst = 0.0
   for number, (state, symbol) in enumerate(zip(states, word, strict=False)):
     part = frame.part(number, poses[number + 1])
     own = frame.costs(number, part)[view, state, symbol]
-    nearest = _nearest(shapes.strokes[view, state], symbol) * shapes.stroke_s
     part_s = min(float(part.weights_s.sum()), shapes.slot_s)
-    level = nearest * part_s / shapes.slot_s
-    misfit, near = misfit + own, near + level
-    if len(shapes.ends[view]) > 1 and part_s > _SEEN * shapes.slot_s:
-      worst = max(worst, float(own / level))
+    share_s = shapes.stroke_s * part_s / shapes.slot_s
+    strokes = shapes.strokes[view, state]
+    nearest = _nearest(strokes, symbol)
+    misfit, near = misfit + own, near + nearest * share_s
+    if part_s > _SEEN * shapes.slot_s:
+      other = nearest if levels else min(nearest, _size(strokes[symbol]))
+      worst = max(worst, float(own / (other * share_s)))
     seen_s += part_s
   begin_s = frame.starts_s(0, poses[1])
   whole = frame.samples.between(begin_s, frame.starts_s(count, poses[-1]))
@@ -72,9 +76,9 @@ def judge(
   end_s = float(ended.weights_s.sum())
   resting_s = ended.weights_s * (ended.times_s >= shapes.end_s)
   path = shapes.ends[view, states[-1]]
-  stay = float(((path - path[:1]) ** 2).sum(axis=-1).mean()) * shapes.end_s
+  stay = _size(path) * shapes.end_s
   stay += float(((path[-1] - path[0]) ** 2).sum()) * frame.after_s
-  if len(shapes.ends[view]) > 1:  # From near home, END hardly moves.
+  if levels:  # From near home, END hardly moves.
     last = shapes.strokes[view, states[-2]]
     stay = max(stay, _nearest(last, word[-1]) * shapes.stroke_s)
   error = float(frame.costs(count, ended)[view, states[-1]])
@@ -115,9 +119,7 @@ def doubt(found: Reading, clear: float, limits: joint_config.Reading) -> str:
       f' {limits.max_misfit}'
     )
   if found.worst > limits.max_worst:
-    return (
-      f'one symbol is no level: error {found.worst:.2f} > {limits.max_worst}'
-    )
+    return f'one symbol is none: error {found.worst:.2f} > {limits.max_worst}'
   if clear < limits.min_clear:
     return f'two words are as likely: clear {clear:.2f} < {limits.min_clear}'
   return ''
@@ -167,6 +169,11 @@ def _aside(
   middle_m = weights_s @ places_m / max(weights_s.sum(), 1e-9)
   aside_m = float(np.hypot(*middle_m * shapes.tell))
   return aside_m / level_m if level_m > _SAME_M else 0.0
+
+
+def _size(path: np.ndarray) -> float:
+  """The mean square distance of a path (P, 2) from its begin."""
+  return float(((path - path[:1]) ** 2).sum(axis=-1).mean())
 
 
 def _nearest(paths: np.ndarray, own: int) -> float:
