@@ -7,6 +7,7 @@ import tracks_kit as kit
 from waggle_tasks import scenario
 from waggle_tasks.agents import group, tracks
 from waggle_tasks.protocol import frame
+from waggle_tasks.protocol.symbols import BITS
 
 
 def scene(language: str, payload: str = '101101') -> scenario.Scenario:
@@ -41,6 +42,38 @@ def test_frames_are_read_as_a_whole(language: str) -> None:
   dance = scene(language)
   rows = kit.seen(dance.agreement, dance.performance, noise_px=0.5)
   assert kit.said(kit.read('joint', dance.agreement, rows)) == '101101'
+
+
+@pytest.mark.parametrize('angle_deg', [0.0, 60.0])
+@pytest.mark.parametrize('motion', ['broken off', 'a climb', 'a slope'])
+@pytest.mark.parametrize(
+  ('language', 'name'),
+  [
+    ('brisk', 'joint'),
+    pytest.param('gentle', 'joint', marks=pytest.mark.slow),
+    pytest.param('paper', 'view_bank', marks=pytest.mark.slow),
+  ],
+)
+def test_what_is_only_like_a_symbol_makes_no_message(
+  language: str, name: str, motion: str, angle_deg: float
+) -> None:
+  dance = scene(language)
+  times_s, places = kit.seen(dance.agreement, dance.performance, angle_deg)
+  slots = dance.performance.schedule.slots
+  third = [slot for slot in slots if slot.gesture.symbol in BITS][2]
+  share = (times_s - third.begin_s) / (third.end_s - third.begin_s)
+  inside = (share > 0) & (share < 1)
+  size_px = np.ptp(places[inside], axis=0).max()
+  home, other = places[:20].mean(axis=0), places.copy()
+  up = -size_px * np.sin(np.pi * share)
+  if motion == 'broken off':
+    other[inside & (share > 0.5)] = home
+  else:
+    aside = up if motion == 'a slope' else 0 * up
+    other[inside] = home + np.stack([aside, up], axis=1)[inside]
+  for rows, expected in ((places, '101101'), (other, None)):
+    events = kit.read(name, dance.agreement, (times_s, rows))
+    assert kit.said(events) == expected
 
 
 @pytest.mark.slow
