@@ -36,6 +36,7 @@ class Reader:
     self._numbers = [slots.START, *range(frame.count + 1)]
     self._poses = [slots.Pose(found.home_px, 0.0, found.scale_px)]
     self._view, self.word = self._survive()
+    self._nearest = self.word
     self._smooth()
 
   def again(self, word: np.ndarray) -> None:
@@ -148,7 +149,17 @@ class Reader:
 
   def judged(self) -> reading.Reading:
     """What the word stands on."""
-    return reading.judge(self._frame, self.word, self._view, self._poses)
+    return reading.judge(
+      self._frame, self.word, self._view, self._poses, self._mended()
+    )
+
+  def _mended(self) -> float:
+    """How much nearer the nearest of all words is, see `reading.Reading`."""
+    if (self._nearest == self.word).all():
+      return 0.0
+    words = np.stack([self.word, self._nearest])
+    own, other = self.costs(words)
+    return float((own - other) / self.apart(words[1:])[0])
 
 
 def _steps(poses: Sequence[slots.Pose]) -> np.ndarray:

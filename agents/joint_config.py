@@ -21,6 +21,9 @@ class Reading(group.Group):
     max_worst: The same of any one symbol: a word of which one is another level
       is none, even if a code would mend it and a wander would explain it, nor
       one of which a gesture was broken off.
+    max_mended: How much nearer than a word of the code any other may be, as a
+      share of how far they are apart: 1 where the other was seen as it should
+      be. A code fills in what was not seen, and mends what was seen no further.
     max_end: The same of END and the rest after it, beside a rest without END.
     max_rest: How far from the hover point the dancer may rest before START and
       after END, by what was seen of the frame between, as a share of how far
@@ -37,6 +40,7 @@ class Reading(group.Group):
   min_clear: float = group.number(0.4, 0, 1)
   max_misfit: float = group.number(0.2, 0, 1)
   max_worst: float = group.number(0.18, 0, 1)
+  max_mended: float = group.number(0.2, 0, 1)
   max_end: float = group.number(0.25, 0, 1)
   max_rest: float = group.number(0.45, 0, 1)
   max_astray: float = group.number(0.2, 0, 1)

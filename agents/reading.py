@@ -23,6 +23,9 @@ class Reading:
     worst: The same of the symbol that fits worst, of those that were seen; of
       a gesture as a share of its own size, if that is less: half of one is
       none.
+    mended: How much nearer the nearest of all words is, those of no code among
+      them, as a share of how far that is from this one: 1 where it was seen as
+      it should be, and 0 where the two differ in what was not seen.
     end: How far END and the rest after it are from what was seen, as a share
       of how far a dancer would be that stayed where it was, or one level
       beside.
@@ -38,6 +41,7 @@ class Reading:
 
   misfit: float
   worst: float
+  mended: float
   end: float
   end_seen: float
   rest: float
@@ -52,6 +56,7 @@ def judge(
   word: np.ndarray,  # (N,)
   view: int,
   poses: Sequence[slots.Pose],  # Of START, each symbol, and END.
+  mended: float,
 ) -> Reading:
   """What a word of a frame stands on, from a view, by poses."""
   shapes, count = frame.shapes, frame.count
@@ -85,6 +90,7 @@ def judge(
   return Reading(
     float(misfit / max(near, 1e-9)),
     worst,
+    mended,
     error / max(stay, 1e-9),
     min(end_s / frame.length_s(count), 1.0),
     _aside(shapes, view, ended.places_m, resting_s),
@@ -120,6 +126,11 @@ def doubt(found: Reading, clear: float, limits: joint_config.Reading) -> str:
     )
   if found.worst > limits.max_worst:
     return f'one symbol is none: error {found.worst:.2f} > {limits.max_worst}'
+  if found.mended > limits.max_mended:
+    return (
+      'another word was seen than any of the code: nearer by'
+      f' {found.mended:.2f} > {limits.max_mended}'
+    )
   if clear < limits.min_clear:
     return f'two words are as likely: clear {clear:.2f} < {limits.min_clear}'
   return ''

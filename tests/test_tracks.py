@@ -6,8 +6,8 @@ import tracks_kit as kit
 
 from waggle_tasks import scenario
 from waggle_tasks.agents import group, tracks
-from waggle_tasks.protocol import frame
-from waggle_tasks.protocol.symbols import BITS
+from waggle_tasks.protocol import frame, performance, schedule
+from waggle_tasks.protocol.symbols import BITS, Symbol
 
 
 def scene(language: str, payload: str = '101101') -> scenario.Scenario:
@@ -74,6 +74,27 @@ def test_what_is_only_like_a_symbol_makes_no_message(
   for rows, expected in ((places, '101101'), (other, None)):
     events = kit.read(name, dance.agreement, (times_s, rows))
     assert kit.said(events) == expected
+
+
+@pytest.mark.parametrize(
+  ('bits', 'flown'),
+  [
+    ('010110', (2, 7, 0, 3)),
+    ('011111', (3, 7, 7, 0)),
+    ('101101', (4, 4, 6, 1)),
+  ],
+)
+def test_a_word_that_was_seen_is_not_mended(
+  bits: str, flown: tuple[int, ...]
+) -> None:
+  # One level beside a word of the code, in one place or in two.
+  dance = scene('swift')
+  near = np.array(dance.agreement.word(bits))
+  assert np.abs(near - flown).max() == 1
+  slots = dance.agreement.spoken.fly([[Symbol.START, *flown, Symbol.END]])
+  other = performance.Performance(schedule.Schedule(slots))
+  rows = kit.seen(dance.agreement, other, angle_deg=0.0)
+  assert kit.said(kit.read('joint', dance.agreement, rows)) is None
 
 
 @pytest.mark.slow
