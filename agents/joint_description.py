@@ -35,8 +35,10 @@ def of(
       f'the word is clear by {limits.min_clear:g}: nearer than any other by'
       ' that share of how far they are apart',
       'its strokes are flown as it has them: error at most'
-      f' {limits.max_misfit:g} of the way to others, and'
-      f' {limits.max_astray:.0%} of the track elsewhere',
+      f' {limits.max_misfit:g} of the way to others, {limits.max_worst:g} of'
+      f' any one, and {limits.max_astray:.0%} of the track elsewhere',
+      f'no other word is nearer by more than {limits.max_mended:g} of how far'
+      ' they are apart, though a code would mend it',
       f'END and the rest after it are seen for {limits.min_seen:.0%} of their'
       f' time, error at most {limits.max_end:g}{rest if by_levels else ""}',
       'what the code and the check of the language ask for holds',

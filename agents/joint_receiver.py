@@ -129,6 +129,11 @@ class JointReceiver:
     del width_px  # Nothing is told by the target's width.
     return joint_description.of(agreement, config)
 
+  @property
+  def home(self) -> watchers.Home | None:
+    """Where the target hovered, for its tracker; None until it has left."""
+    return self._tracker.ghost
+
   def _forget(self) -> None:
     """Begins anew, with another target or another place of it."""
     self._history = history.History()
@@ -176,16 +181,13 @@ class JointReceiver:
     anchor_px: np.ndarray | None,
     time_s: float,
   ) -> tuple[receiver.Event, ...]:
-    """Takes what a tracker makes of an image: reading begins here.
+    """Takes what a tracker makes of an image, and returns what `step` does.
 
     Args:
       tracks: The target in this image; when it has just left the place where
         it hovered, in all images since its motion began. At least one.
       anchor_px: (2,) where it hovered; None as long as it has not moved.
       time_s: The time of the image.
-
-    Returns:
-      The events that this image confirms, as `step` does.
     """
     self.track = tracks[-1]
     if anchor_px is None:

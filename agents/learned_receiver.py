@@ -29,7 +29,9 @@ from waggle_tasks.protocol import agreement as agreement_lib
 # How much of what is told of a pose is believed: right, down, late and size.
 _BELIEVED = np.array([0.6, 0.6, 0.3, 0.0])
 # Of `joint`, and of no use here.
-_OTHERS = 'min_clear', 'max_misfit', 'max_worst', 'max_end', 'max_astray'
+_OTHERS = (
+  'min_clear', 'max_misfit', 'max_worst', 'max_mended', 'max_end', 'max_astray'
+)  # fmt: skip
 
 
 @dataclasses.dataclass(frozen=True)

@@ -14,6 +14,7 @@ from waggle_tasks.agents import (
   learned_receiver,
   outsiders,
   receiver,
+  seeker,
   settings,
 )
 from waggle_tasks.protocol import agreement as agreement_lib
@@ -45,6 +46,7 @@ RECEIVERS: dict[str, Any] = {  # A `Maker` each.
   'joint': joint_receiver.JointReceiver,
   'events': events_receiver.EventsReceiver,
   'learned': learned_receiver.LearnedReceiver,
+  'seeker': seeker.SeekerReceiver,
 }
 _PARTS = ('step', 'track', 'segment')  # Of what was made.
 

@@ -57,6 +57,13 @@ class Pose:
       return self
     return Pose((*self.position_m[:2], height_m), self.yaw_rad)
 
+  def moved(self, up_m: float, left_rad: float) -> 'Pose':
+    """The pose higher up, and turned to the left."""
+    if not up_m and not left_rad:
+      return self
+    x_m, y_m, z_m = self.position_m
+    return Pose((x_m, y_m, z_m + up_m), self.yaw_rad + left_rad)
+
 
 def names(count: int) -> list[str]:
   """What observers are called, in the order of their poses."""

@@ -27,7 +27,10 @@ def poses(scene: 'scenario.Scenario') -> dict[str, layouts.Pose]:
     )
   out |= dict(zip(layouts.names(scene.observers), places, strict=True))
   for name, pose in out.items():
-    out[name] = pose = pose.settled(scene.hover_height_m)
+    pose = pose.settled(scene.hover_height_m)
+    if name != 'performer':
+      pose = pose.moved(scene.above_m, math.radians(scene.aside_deg))
+    out[name] = pose
     bounds.check_inside(name, pose)
   # Two neighbours can come closer by the jitter of both, along x and y, and by
   # the drift and the errors of both.

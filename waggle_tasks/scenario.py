@@ -58,6 +58,10 @@ class Scenario:
       performer, -180 to 180 degrees; one observer is there.
     spacing_m: Distance between neighbours in a line, in m; the paper gives
       none.
+    aside_deg: How far to the left of the performer every observer faces, -30 to
+      30 degrees; the receiver 'seeker' finds it there.
+    above_m: How much higher than agreed every observer hovers, -1 to 1 m, until
+      a message leads it away.
     payload: Its bits: one of direction, then as many of heading and of distance
       as `units` say, three and two in the paper.
     jitter_m: Bound of the initial x and y offset of every vehicle, in m.
@@ -119,6 +123,8 @@ class Scenario:
   half_span_deg: float = 30.0
   bearing_deg: float = 0.0
   spacing_m: float = 0.6
+  aside_deg: float = 0.0
+  above_m: float = 0.0
   payload: str = '000010'
   jitter_m: float = 0.0
   seed: int = 0

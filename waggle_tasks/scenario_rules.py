@@ -81,6 +81,8 @@ def _check_numbers(scene: 'scenario.Scenario') -> None:
     'half_span_deg': (0.0, 180.0),
     'bearing_deg': (-180.0, 180.0),
     'spacing_m': (0.0, 4.0),
+    'aside_deg': (-30.0, 30.0),
+    'above_m': (-1.0, 1.0),
     'jitter_m': (0.0, 0.1),
     'stop_s': (0.0, 600.0),
     'eye_offset_m': (-0.1, 0.1),
