@@ -14,10 +14,21 @@ class Rest:
   """A picture in which a dancer rests, and maybe others."""
 
   def __init__(
-    self, grey: np.ndarray, place_px: np.ndarray, width_px: float
+    self,
+    grey: np.ndarray,
+    place_px: np.ndarray,
+    width_px: float,
+    zoom: float,
   ) -> None:
-    """Takes the picture, (H, W) uint8, and where the dancer is in it, (2,)."""
-    self._grey = grey
+    """Takes a picture.
+
+    Args:
+      grey: (H, W) uint8.
+      place_px: (2,) where the dancer is in it...
+      width_px: ...and how wide.
+      zoom: Its pixels over those of the paper's camera.
+    """
+    self._grey, self._zoom = grey, zoom
     self._place_px, self._width_px = place_px, width_px
     self._middle_px = np.array(grey.shape[::-1]) / 2
 
@@ -34,7 +45,7 @@ class Rest:
     x, y = np.abs([columns - self._place_px[0], rows - self._place_px[1]])
     here = np.maximum(x, y) <= 2
     own = np.maximum(x, y) < 1.5 * side
-    reach_px = max(_MIDDLE_PX, self._width_px)
+    reach_px = max(_MIDDLE_PX * self._zoom, self._width_px)
     x, y = np.abs([columns - self._middle_px[0], rows - self._middle_px[1]])
     middle = (np.maximum(x, y) <= reach_px) & ~own
     most = energy[here].max(initial=0.0)

@@ -92,7 +92,8 @@ class _Window:
     agreed = dataclasses.replace(agreement, camera=camera)
     self.reader = joint_receiver.JointReceiver(agreed, config.frames)
     self.since_s = time_s
-    self.refused = False  # Somebody hovers nearer to the middle.
+    self.found = False  # Its dancer has left its place, and counts...
+    self.refused = False  # ...or not: somebody hovers nearer to the middle.
 
   @property
   def home(self) -> watchers.Home | None:
@@ -153,11 +154,10 @@ class SeekerReceiver:
     self._config = config = config or self.DEFAULT
     self._agreement = agreement
     self._images = inputs.Images()
-    self._motions = motions.Motions()
+    self._motions = motions.Motions(agreement.camera.zoom)
     self._past: deque[tuple[float, np.ndarray]] = deque()
     self._middle = joint_receiver.JointReceiver(agreement, config.frames)
     self._windows: list[_Window] = []
-    self._found: list[_Window] = []  # Those who have left their places.
     self.track: klt.Track | None = None
     self.segment: None = None
 
@@ -195,7 +195,7 @@ class SeekerReceiver:
     grey = difference.grey(image)
     places = self._motions.step(grey, time_s)
     if self._middle.home is not None:
-      self._windows, self._found = [], []
+      self._windows = []
       self._past.clear()
       return events
     heard = [
@@ -210,27 +210,30 @@ class SeekerReceiver:
     self._keep(time_s)
     for place_px in places:
       self._seek(place_px, time_s)
-    if not self._found:
+    dancers = [each for each in self._windows if each.found]
+    if not dancers:
       return events
-    nearest = min(self._found, key=self._aside_px)
+    nearest = min(dancers, key=self._aside_px)
     self.track = nearest.seen()
     return next((news for each, news in heard if each is nearest), ())
 
   def _keep(self, time_s: float) -> None:
-    """Drops windows in which nobody dances, and refuses who does not count."""
-    kept: list[_Window] = []
+    """Tells whose dancers count, and drops windows in which nobody dances."""
     for window in self._windows:
-      lasts = time_s - window.since_s <= self._config.seeking.found_s
-      if window.home is not None and window not in self._found:
-        if not window.refused:
-          window.refused = self._others(window, window.home)
-        if not window.refused:
-          self._found.append(window)
-      found = window in self._found and window.home is not None
-      if found or (lasts and window not in self._found):
-        kept.append(window)
-    self._windows = kept
-    self._found = [each for each in self._found if each in kept]
+      home = window.home
+      if home is not None and not (window.found or window.refused):
+        window.refused = self._others(window, home)
+        window.found = not window.refused
+    limit_s = self._config.seeking.found_s
+    self._windows = [
+      each
+      for each in self._windows
+      if (
+        each.home is not None
+        if each.found
+        else time_s - each.since_s <= limit_s
+      )
+    ]
 
   def _seek(self, place_px: np.ndarray, time_s: float) -> None:
     """Begins a reader about a place where something moves, (2,)."""
@@ -254,8 +257,9 @@ class SeekerReceiver:
   def _others(self, window: _Window, home: watchers.Home) -> bool:
     """Whether somebody hovers nearer to the middle than its dancer did."""
     picture = company.Rest(
-      self._past[0][1], window.home_px(home), home.width_px
-    )
+      self._past[0][1], window.home_px(home), home.width_px,
+      self._agreement.camera.zoom,
+    )  # fmt: skip
     return picture.middle_holds() or picture.alike(
       self._aside_px(window) - home.width_px
     )

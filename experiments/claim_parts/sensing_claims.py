@@ -9,6 +9,17 @@ _SWEEP = (
 _GRID = '--bearing_deg=30', '--grid=distance_m=2.5', '--grid=noise_sigma=0'
 
 CLAIMS = {
+  'anywhere': kinds.Claim(
+    'anywhere',
+    kinds.CELLS,
+    (
+      *_SWEEP[:-1],
+      '--repeats=2',
+      '--receiver=seeker',
+      '--grid=aside_deg=-20',
+      '--grid=above_m=-0.5,0',
+    ),
+  ),
   **{
     f'eyes-{name}': kinds.Claim(
       f'eyes-{name}', kinds.CELLS, (*_SWEEP, f'--receiver={name}', *_GRID)
