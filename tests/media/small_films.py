@@ -5,6 +5,7 @@ import fractions
 import pathlib
 
 import av
+import av.subtitles.stream  # Which PyAV imports late, when a test may hide it.
 import cv2
 import numpy as np
 

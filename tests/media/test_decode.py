@@ -530,7 +530,7 @@ def test_only_pixels_grow_with_the_focal_length(factor: float) -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-  'name', sorted({*receivers.RECEIVERS} - {'joint', 'learned'})
+  'name', sorted({*receivers.RECEIVERS} - {'joint', 'learned', 'seeker'})
 )
 def test_every_receiver_goes_by_its_own_camera(name: str) -> None:
   focal_px = camera.Camera.focal_px / 2
