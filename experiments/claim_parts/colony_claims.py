@@ -24,6 +24,10 @@ CLAIMS = {
       '--grid=distance_m=0.6,2', '--grid=dropped_share=0,0.3',
     ),
   ),
+  'hostile-tracks-brisk': kinds.Claim(
+    'hostile-tracks-brisk', kinds.UNCHECKED,
+    detail='five thousand tracks take a quarter of an hour',
+  ),
   'nest-choice': _swarms(
     'nest-choice', '--vehicles=10', '--ratios=0.5,0.9'
   ),
