@@ -206,6 +206,39 @@ def test_counts_of_a_part_are_held_against_the_whole(
   assert (wrong(compare.part(said, made)) == []) is fits
 
 
+def _maps(columns: str, near: str, far: str) -> documents.Block:
+  """A sweep's map for each of two shares of images that are lost."""
+  rule = '  '.join('-' * len(title) for title in columns.split('  '))
+  lines = []
+  for share, counts in (('0', near), ('0.3', far)):
+    lines += [
+      f'dropped share = {share}:',
+      columns,
+      rule,
+      f'0.6        {counts}',
+      '',
+    ]
+  return block(*lines)
+
+
+@pytest.mark.parametrize(
+  ('made', 'far', 'fits'),
+  [
+    ('distance_m  swapped', '1/2    ', True),
+    ('distance_m  swapped', '2/2    ', False),
+    ('distance_m  unknown', '2/2    ', False),
+  ],
+)
+def test_a_part_may_have_fewer_columns_of_each_map(
+  made: str, far: str, fits: bool
+) -> None:
+  whole = _maps(
+    'distance_m  repeated  swapped', ' 4/4       4/4', ' 4/4       1/4'
+  )
+  part = _maps(made, ' 2/2', f' {far}')
+  assert (wrong(compare.part(whole, part)) == []) is fits
+
+
 def test_a_table_ends_where_its_columns_do() -> None:
   (table,) = block(*SUITE).tables
   assert table.header[0] == 'standard: configuration'

@@ -143,7 +143,8 @@ def part(
 
 def _parts(block: documents.Block, printed: documents.Block) -> _Found:
   for made, table in itertools.product(printed.tables, block.tables):
-    if made.header[0] != table.header[0]:
+    panels = ' = ' in table.title and made.title != table.title
+    if made.header[0] != table.header[0] or panels:
       continue
     known = {row[0]: (at, row) for at, row in enumerate(table.rows)}
     for row in made.rows:
@@ -151,8 +152,12 @@ def _parts(block: documents.Block, printed: documents.Block) -> _Found:
         yield finding.differs(block.place(), 'no such row', row[0])
         continue
       at, whole = known[row[0]]
-      for title, says, cell in zip(table.header, whole, row, strict=True):
-        yield from _counts(block, table.place(at), title, says, cell)
+      says = dict(zip(table.header, whole, strict=True))
+      for title, cell in zip(made.header, row, strict=True):
+        if title in says:
+          yield from _counts(block, table.place(at), title, says[title], cell)
+        else:
+          yield finding.differs(block.place(), 'no such column', title)
 
 
 def _counts(
