@@ -176,19 +176,7 @@ class SeekerReceiver:
   def step(
     self, image: np.ndarray, time_s: float
   ) -> tuple[receiver.Event, ...]:
-    """Takes one image, which is all that the receiver ever gets.
-
-    Args:
-      image: (H, W, 3) uint8 RGB, of one size in an episode.
-      time_s: Its time in seconds, later than that of the image before.
-
-    Returns:
-      The events, in the sense of `receiver.Event`, that this image confirms.
-
-    Raises:
-      ReceiverError: if the image or its time is of another kind; then nothing
-        has changed.
-    """
+    """See `joint_receiver.JointReceiver.step`."""
     self._images.check(image, time_s)
     events = self._middle.step(image, time_s)
     self.track = self._middle.track
