@@ -179,10 +179,11 @@ class SeekerReceiver:
     """See `joint_receiver.JointReceiver.step`."""
     self._images.check(image, time_s)
     events = self._middle.step(image, time_s)
-    self.track = self._middle.track
+    self.track = None  # Nobody is known before somebody moves.
     grey = difference.grey(image)
     places = self._motions.step(grey, time_s)
     if self._middle.home is not None:
+      self.track = self._middle.track
       self._windows = []
       self._past.clear()
       return events
