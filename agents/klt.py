@@ -13,6 +13,7 @@ import cv2
 import numpy as np
 
 from waggle_tasks.agents import config as config_lib
+from waggle_tasks.agents import medians
 
 # Speed is measured over at least so long, the time from one image to the next
 # of the paper's camera: faster cameras, and recordings that show each image
@@ -192,7 +193,7 @@ class KltTracker:
     if not kept.any():
       return np.zeros(2), 0
     shifts = (there - self._points)[kept]
-    median = _median(shifts)
+    median = medians.of(shifts)
     agree = np.abs(shifts - median).max(1) < config.forward_backward_px
     self._points = there[kept][agree]
     return median.astype(float), int(agree.sum())
@@ -231,9 +232,3 @@ class KltTracker:
     if self.anchor_px is None and len(new) >= config.min_support:
       self._centre_px = np.median(new, axis=0).astype(float)
       self.anchor_px = self._centre_px.copy()
-
-
-def _median(rows: np.ndarray) -> np.ndarray:  # (N, 2)
-  """That of each column; for so few rows much faster than numpy's."""
-  ranked, half = np.sort(rows, axis=0), len(rows) // 2
-  return ranked[half] if len(rows) % 2 else ranked[half - 1 : half + 1].mean(0)

@@ -11,7 +11,7 @@ import math
 import cv2
 import numpy as np
 
-from waggle_tasks.agents import difference, turns
+from waggle_tasks.agents import difference, medians, turns
 
 _STEEP = 2.0  # Edges are of so many grey levels per pixel...
 _USUAL = 8.0  # ...and so many times the usual.
@@ -121,7 +121,7 @@ class Level:
 
 def scatter(residual: np.ndarray) -> float:  # (K,)
   """The median deviation from zero, which the few that do not fit leave."""
-  return float(np.median(np.abs(residual)))
+  return float(medians.of(np.abs(residual)))
 
 
 def outlier(scatter: float) -> float:

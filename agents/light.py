@@ -14,6 +14,8 @@ import math
 import cv2
 import numpy as np
 
+from waggle_tasks.agents import medians
+
 _CELLS = 12  # Along the shorter side.
 _LEAST_PX = 4  # Side of a cell.
 _NEAR = 5  # Cells along a square that are near each other.
@@ -133,9 +135,9 @@ def _fit(
     axis=-1,
   ).reshape(-1, 4)
   wanted = change.ravel().astype(float)
-  residual = wanted - np.median(wanted)
+  residual = wanted - medians.of(wanted)
   for _ in range(_STEPS):
-    most = max(_OUTLIER * np.median(np.abs(residual)), limit)
+    most = max(_OUTLIER * medians.of(np.abs(residual)), limit)
     fits = np.abs(residual) <= most
     # Weak ridge: a part without contrast tells gain from offset in no way.
     known = table[fits]

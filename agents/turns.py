@@ -79,6 +79,10 @@ class Turns:
     """
     self._size, self._focal_px = size, focal_px
     self._middle_px = (np.array(size) - 1) / 2
+    self._to_rays = np.eye(3)
+    self._to_rays[:2, 2] = -self._middle_px
+    self._to_rays[:2] /= focal_px
+    self._to_pixels = np.linalg.inv(self._to_rays)
 
   def smaller(self, times: int) -> 'Turns':
     """See `Geometry`."""
@@ -106,10 +110,7 @@ class Turns:
     """The homography (3, 3) from pixels before to pixels after."""
     x, y, roll = motion / self._focal_px
     turn, _ = cv2.Rodrigues(np.array([-y, x, roll]))
-    to_rays = np.eye(3)
-    to_rays[:2, 2] = -self._middle_px
-    to_rays[:2] /= self._focal_px
-    return np.linalg.inv(to_rays) @ turn @ to_rays
+    return self._to_pixels @ turn @ self._to_rays
 
 
 def _undone(

@@ -3,7 +3,6 @@
 from collections.abc import Sequence
 
 import numpy as np
-from scipy import signal
 
 from waggle_tasks import scenario
 from waggle_tasks.experiments.episodes import ladder_table, sight_lines
@@ -131,6 +130,8 @@ def draw(
     scale: By how much they are multiplied.
     rng: What is drawn from.
   """
+  from scipy import signal  # It takes seconds, which others need not wait.
+
   count = len(sight.places_px)
   height_px = sight.places_px[:, 1] - sight.places_px[0, 1]
   places_px = sight.places_px + scale * np.array(track.bias_px)
