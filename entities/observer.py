@@ -1,4 +1,4 @@
-"""An observer: a Crazyflie with an eye, which is all that it has."""
+"""An observer: a vehicle with an eye; it can dance as all can."""
 
 from collections.abc import Callable, Sequence
 
@@ -8,13 +8,21 @@ import numpy as np
 
 from waggle_tasks import eyes
 from waggle_tasks import sensor as sensor_lib
-from waggle_tasks.entities import crazyflie, eye, feed, lenses, optics, shutter
+from waggle_tasks.entities import (
+  crazyflie,
+  eye,
+  feed,
+  lenses,
+  optics,
+  performer,
+  shutter,
+)
 from waggle_tasks.protocol import agreement as agreement_lib
 from waggle_tasks.protocol import camera as camera_lib
 
 
-class Observer(crazyflie.Crazyflie):
-  """A Crazyflie whose camera looks where its nose points.
+class Observer(performer.Performer):
+  """A vehicle whose camera looks where its nose points.
 
   Attributes:
     sensor: What spoils its images, from the next episode on.
@@ -44,7 +52,7 @@ class Observer(crazyflie.Crazyflie):
       looks_with: What its camera is, beyond that of the agreement.
       accent_rgba: See `crazyflie.Crazyflie`.
     """
-    super()._build(name, accent_rgba, dynamics == 'rotors')
+    super()._build(name, dynamics, accent_rgba)
     self._incremental = camera == 'incremental'
     seen_with = agreement.camera
     drawn = lenses.drawn(seen_with, looks_with)

@@ -1,5 +1,6 @@
-"""The performer: a Crazyflie that dances a schedule of symbols."""
+"""A vehicle that can dance a schedule of symbols by itself."""
 
+from collections.abc import Sequence
 import math
 
 import numpy as np
@@ -15,15 +16,19 @@ class Performer(crazyflie.Crazyflie):
   """Flies gestures in its frontal plane, smoothly, until it is stopped."""
 
   def _build(  # type: ignore[override]
-    self, name: str = 'performer', dynamics: str = 'ideal'
+    self,
+    name: str = 'performer',
+    dynamics: str = 'ideal',
+    accent_rgba: Sequence[float] = crazyflie.AMBER,
   ) -> None:
     """Builds the model.
 
     Args:
       name: Model name, the prefix of everything inside it.
       dynamics: One of `limits.DYNAMICS`.
+      accent_rgba: See `crazyflie.Crazyflie`.
     """
-    super()._build(name, spinning=dynamics == 'rotors')
+    super()._build(name, accent_rgba, dynamics == 'rotors')
     self._limits = limits.LIMITS[dynamics]
     self._schedule = schedule_lib.Schedule(())
     self._stop_s = math.inf

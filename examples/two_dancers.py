@@ -6,7 +6,7 @@ import loop
 
 from waggle_tasks import registry, scenarios
 from waggle_tasks.entities import performer
-from waggle_tasks.tasks import broadcast, parts
+from waggle_tasks.tasks import broadcast, roles
 
 
 def main() -> None:
@@ -14,13 +14,11 @@ def main() -> None:
   scene = scenarios.find('broadcast', observers=1, **loop.FAST)
   other = dataclasses.replace(scene, payload='101001')
   made = registry.parts(scene)
-  beside = parts.Dancer(performer.Performer('dancer'), other.performance)
   middle = made.poses['performer']
   place = dataclasses.replace(middle, position_m=(0.8, 0.5, 1.3))
+  beside = roles.Role(performer.Performer('dancer'), place, other.performance)
   task = broadcast.Broadcast(
-    dataclasses.replace(
-      made, others=(beside,), poses={**made.poses, 'dancer': place}
-    )
+    dataclasses.replace(made, roles=(*made.roles, beside))
   )
   loop.fly(registry.of_task(task))
 

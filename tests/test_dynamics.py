@@ -12,7 +12,7 @@ from waggle_tasks import plain, registry, scenario
 from waggle_tasks.entities import airframe, crazyflie, performer
 from waggle_tasks.experiments.record import scenario_fields
 from waggle_tasks.protocol import gestures, limits, reference, timing
-from waggle_tasks.tasks import air, broadcast, parts
+from waggle_tasks.tasks import air, broadcast, parts, roles
 
 Load = Callable[..., registry.composer.Environment]
 HOME_M = np.array([0.0, 0.0, 1.3])
@@ -223,7 +223,7 @@ def test_parts_of_other_dynamics_are_refused() -> None:
   for made, changes, error in (
     (
       turning,
-      {'performer': ideal.performer},
+      {'roles': ideal.roles},
       '`dynamics` of performer must be',
     ),
     (ideal, {'dynamics': 'rotors'}, '`dynamics` of performer must be'),
@@ -238,23 +238,22 @@ def test_parts_of_other_dynamics_are_refused() -> None:
 def test_a_second_dancer_flies_with_rotors_too(load: Load) -> None:
   scene = scenario.Scenario(observers=1, duration_s=3.0, **QUICK)
   made = registry.parts(scene)
-  other = parts.Dancer(
-    performer.Performer('dancer', scene.dynamics),
-    dataclasses.replace(scene, payload='111111').performance,
-  )
   place = dataclasses.replace(
     made.poses['performer'], position_m=(0.8, 0.5, 1.3)
   )
+  other = roles.Role(
+    performer.Performer('dancer', scene.dynamics),
+    place,
+    dataclasses.replace(scene, payload='111111').performance,
+  )
   task = broadcast.Broadcast(
-    dataclasses.replace(
-      made, others=(other,), poses={**made.poses, 'dancer': place}
-    )
+    dataclasses.replace(made, roles=(*made.roles, other))
   )
   environment = registry.of_task(task)
   for each in task.observers:
     each.observables.camera.enabled = False
   ways_m = np.array([*fly(environment)])
   environment.close()
-  apart_m = ways_m[:, 0] - ways_m[:, 1]
+  apart_m = ways_m[:, 0] - ways_m[:, -1]
   assert np.abs(apart_m - apart_m[0]).max() < 0.002
-  assert np.ptp(ways_m[:, 1, 2]) > 0.08
+  assert np.ptp(ways_m[:, -1, 2]) > 0.08

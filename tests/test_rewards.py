@@ -11,7 +11,7 @@ from waggle_tasks import registry
 from waggle_tasks.arenas import flight_room, layouts
 from waggle_tasks.entities import observer, performer
 from waggle_tasks.protocol import gestures, timing
-from waggle_tasks.tasks import broadcast, parts
+from waggle_tasks.tasks import broadcast, parts, roles
 
 Fixture = Callable[..., object]
 Load = Callable[..., composer.Environment]
@@ -143,20 +143,19 @@ def test_a_graze_of_milliseconds_within_a_step_counts(
   assert environment.task.contacts == (('observer_1', 'room'),)
 
 
-@pytest.mark.parametrize(
-  ('name', 'error'),
-  [
-    ('performer', 'must have its own name: two are performer'),
-    ('dancer', '`poses` must hold one of every vehicle: there is none of'),
-  ],
-)
-def test_a_second_dancer_needs_a_name_and_a_place(
-  name: str, error: str
-) -> None:
+def test_a_second_dancer_needs_a_name() -> None:
   made = registry.parts(registry.find('no_send', observers=1))
-  dancer = parts.Dancer(performer.Performer(name), made.performance)
+  dancer = roles.Role(performer.Performer(), made.poses['performer'])
+  error = 'must have its own name: two are performer'
   with pytest.raises(parts.PartsError, match=error):
-    dataclasses.replace(made, others=(dancer,))
+    dataclasses.replace(made, roles=(*made.roles, dancer))
+
+
+def test_a_broadcast_needs_somebody_who_dances() -> None:
+  made = registry.parts(registry.find('no_send', observers=1))
+  nobody = dataclasses.replace(made, roles=made.roles[1:])
+  with pytest.raises(parts.PartsError, match='must hold one with a'):
+    broadcast.Broadcast(nobody)
 
 
 def test_two_vehicles_that_touch_are_named(
@@ -164,18 +163,18 @@ def test_two_vehicles_that_touch_are_named(
 ) -> None:
   """Without safety, as the checks would refuse the way."""
   scene = registry.find('broadcast', observers=2, **HURRIED)
-  poses = {
-    'performer': layouts.performer_pose(),
+  audience = {
     'observer_1': layouts.facing_performer(-0.2, -1.3),
     'observer_2': layouts.facing_performer(0.2, -1.3),
   }
+  dancer = performer.Performer()
   task = broadcast.Broadcast(
     parts.Parts(
       room=flight_room.FlightRoom(),
-      performer=performer.Performer(),
-      observers=tuple(observer.Observer(f'observer_{i}') for i in (1, 2)),
-      poses=poses,
-      performance=scene.performance,
+      roles=(
+        roles.Role(dancer, layouts.performer_pose(), scene.performance),
+        *(roles.Role(observer.Observer(n), p) for n, p in audience.items()),
+      ),
       duration_s=10.0,
       minimum_spacing_m=0.0,
     )

@@ -1,4 +1,4 @@
-"""Builds the task of a conversation."""
+"""Builds the task of a conversation, and its parts."""
 
 import dataclasses
 from typing import Any
@@ -7,15 +7,16 @@ from waggle_tasks import conversation, errors
 from waggle_tasks.arenas import flight_room
 from waggle_tasks.entities import crazyflie, observer
 from waggle_tasks.protocol import checks
-from waggle_tasks.tasks import furnish, talk
+from waggle_tasks.tasks import furnish, objectives, roles, talk
+from waggle_tasks.tasks import parts as parts_lib
 
 NAME = 'conversation'
 
 
-def build(scene: conversation.Conversation) -> talk.Talk:
-  """Builds the task of a conversation from new entities."""
+def parts(scene: conversation.Conversation) -> parts_lib.Parts:
+  """Builds the parts of a conversation's task, to be changed or added to."""
   agreement, poses = scene.accord.agreement, scene.poses()
-  members = tuple(
+  members = (
     observer.Observer(
       name,
       sensor=scene.sensor,
@@ -25,16 +26,26 @@ def build(scene: conversation.Conversation) -> talk.Talk:
     )
     for name in poses
   )
-  room = flight_room.FlightRoom(scene.appearance, agreement=agreement)
-  made = talk.TalkParts(
-    room, members, poses, scene.episode_s, agreement, scene.dynamics,
-    scene.drift,
-  )  # fmt: skip
-  task = talk.Talk(made)
-  furnish.furnish(
-    room, scene.surroundings, poses, agreement, scene.dynamics == 'rotors'
+  made = parts_lib.Parts(
+    room=flight_room.FlightRoom(scene.appearance, agreement=agreement),
+    roles=tuple(
+      roles.Role(each, pose, objective=objectives.KeepClear())
+      for each, pose in zip(members, poses.values(), strict=True)
+    ),
+    duration_s=scene.episode_s,
+    agreement=agreement,
+    dynamics=scene.dynamics,
+    drift=scene.drift,
   )
-  return task
+  furnish.furnish(
+    made.room, scene.surroundings, poses, agreement, scene.dynamics == 'rotors'
+  )
+  return made
+
+
+def build(scene: conversation.Conversation) -> talk.Talk:
+  """Builds the task of a conversation from new entities."""
+  return talk.Talk(parts(scene))
 
 
 def task(**changes: object) -> tuple[talk.Talk, int]:

@@ -7,7 +7,7 @@ from waggle_tasks import conversations, fidelity, runtime, scenarios
 from waggle_tasks import scenario as scenario_lib
 from waggle_tasks.arenas import flight_room, layouts
 from waggle_tasks.entities import lenses, observer, performer
-from waggle_tasks.tasks import broadcast, copies, furnish
+from waggle_tasks.tasks import broadcast, copies, furnish, roles
 from waggle_tasks.tasks import parts as parts_lib
 
 runtime.require_versions(mujoco.__version__)
@@ -24,11 +24,11 @@ def parts(scenario: Scenario) -> parts_lib.Parts:
   """Builds the parts of a scenario's task, to be changed or added to.
 
   Those of a task with a second dancer are, for example,
-  `dataclasses.replace(made, others=(parts.Dancer(...),), poses=...)`.
+  `dataclasses.replace(made, roles=(*made.roles, roles.Role(...)))`.
   """
   fidelity.check_rendered(scenario)
-  agreement = scenario.agreement
-  observers = tuple(
+  agreement, poses = scenario.agreement, scenario.poses()
+  observers = (
     observer.Observer(
       name,
       scenario.camera,
@@ -42,16 +42,17 @@ def parts(scenario: Scenario) -> parts_lib.Parts:
       layouts.names(scenario.observers), scenario.sensors, strict=True
     )
   )
+  dancer = performer.Performer(dynamics=scenario.dynamics)
   made = parts_lib.Parts(
     room=flight_room.FlightRoom(
       scenario.appearance,
       agreement=agreement,
       drawn_px=lenses.drawn(agreement.camera, scenario.eye).size,
     ),
-    performer=performer.Performer(dynamics=scenario.dynamics),
-    observers=observers,
-    poses=scenario.poses(),
-    performance=scenario.performance,
+    roles=(
+      roles.Role(dancer, poses['performer'], scenario.performance),
+      *(roles.Role(each, poses[each.mjcf_model.model]) for each in observers),
+    ),
     duration_s=scenario.episode_s,
     agreement=agreement,
     jitter_m=scenario.jitter_m,
@@ -62,7 +63,7 @@ def parts(scenario: Scenario) -> parts_lib.Parts:
     safety=scenario.safety,
   )
   furnish.furnish(
-    made.room, scenario.surroundings, made.poses, agreement,
+    made.room, scenario.surroundings, poses, agreement,
     scenario.dynamics == 'rotors',
   )  # fmt: skip
   return made

@@ -22,7 +22,7 @@ class Escort:
       dancers_m: (3,) where each dancer hovers.
     """
     self._kept_m, self._dancers_m = parts.kept_m, dancers_m
-    self._free_s = max(e.performance.end_s for e in parts.dancers.values())
+    self._free_s = max(each.end_s for each in parts.performances.values())
     self._convoy = convoy.Convoy(
       avoidance.Law(parts.kept_m), parts.agreement.frame_s
     )

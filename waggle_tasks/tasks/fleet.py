@@ -1,44 +1,17 @@
 """The vehicles of a task: where they are, and where they are told to be."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 import math
-from typing import Protocol
 
 from dm_control import mjcf
 import numpy as np
 
-from waggle_tasks.arenas import flight_room, layouts
-from waggle_tasks.entities import autopilot, controller, crazyflie
-from waggle_tasks.protocol import agreement as agreement_lib
-from waggle_tasks.tasks import air as air_lib
+from waggle_tasks.arenas import layouts
+from waggle_tasks.entities import autopilot, controller
 from waggle_tasks.tasks import convoy, estimators, weather
-from waggle_tasks.tasks import drift as drift_lib
+from waggle_tasks.tasks import parts as parts_lib
 
 Offsets = dict[str, tuple[np.ndarray, np.ndarray]]
-
-
-class Made(Protocol):
-  """What a fleet asks of the parts of a task, see `parts.Parts`."""
-
-  @property
-  def duration_s(self) -> float:
-    """How long an episode lasts at most."""
-    ...
-
-  @property
-  def agreement(self) -> agreement_lib.Agreement:
-    """What all know."""
-    ...
-
-  @property
-  def air(self) -> air_lib.Air:
-    """What the air does."""
-    ...
-
-  @property
-  def estimator(self) -> str:
-    """How vehicles know where they are."""
-    ...
 
 
 class Fleet:
@@ -49,32 +22,25 @@ class Fleet:
     told_m: Where each was last told to be, (3,), before its drift.
   """
 
-  def __init__(
-    self,
-    room: flight_room.FlightRoom,
-    vehicles: Mapping[str, crazyflie.Crazyflie],
-    poses: Mapping[str, layouts.Pose],
-    dynamics: str = 'ideal',
-    frame_s: float = agreement_lib.Agreement().frame_s,
-  ) -> None:
-    """Puts the vehicles into a room.
+  def __init__(self, parts: parts_lib.Parts) -> None:
+    """Puts the vehicles into their room.
 
     Args:
-      room: The room.
-      vehicles: The vehicles by name.
-      poses: Where each starts.
-      dynamics: One of `limits.DYNAMICS`.
-      frame_s: How long a control step is.
+      parts: What the task is made of.
     """
-    self._vehicles, self._poses = dict(vehicles), poses
+    room, vehicles, poses = parts.room, parts.vehicles, parts.poses
+    self._vehicles, self._poses = vehicles, poses
     attached = [room.add_vehicle(v, poses[n]) for n, v in vehicles.items()]
     self._joints = [each.freejoint for each in attached]
     yaws_rad = {name: poses[name].yaw_rad for name in vehicles}
     self._autopilot: autopilot.Autopilot | None = None
     self._controllers: dict[str, controller.Controller | autopilot.Seat] = {}
-    if dynamics == 'rotors':
+    if parts.dynamics == 'rotors':
       self._autopilot = autopilot.Autopilot(
-        room.mjcf_model, vehicles, [*yaws_rad.values()], frame_s
+        room.mjcf_model,
+        vehicles,
+        [*yaws_rad.values()],
+        parts.agreement.frame_s,
       )
       self._controllers |= self._autopilot.seats
     else:
@@ -96,19 +62,43 @@ class Fleet:
       if isinstance(each, controller.Controller):
         each.after_compile(physics)
 
-  def place(
+  def begin(
+    self,
+    physics: mjcf.Physics,
+    parts: parts_lib.Parts,
+    random_state: np.random.RandomState,
+  ) -> None:
+    """Begins an episode, with every vehicle at its place.
+
+    Args:
+      physics: The compiled model.
+      parts: What the task is made of.
+      random_state: Of the episode: places, drifts, air and errors are drawn.
+    """
+    self._place(physics, parts.jitter_m, random_state)
+    self._sways = {}
+    for name, home in self.homes.items():
+      dances = name in parts.performances
+      draw = parts.drift.performer if dances else parts.drift.observer
+      self._sways[name] = draw(
+        random_state, home.yaw_rad, parts.agreement.rate_hz
+      )
+    self._drifts: tuple[float, Offsets] = math.nan, {}
+    seconds, height_m = parts.duration_s, parts.agreement.hover_height_m
+    air = weather.draw(parts.air, height_m, seconds, random_state)
+    self._belief = estimators.draw(
+      parts.estimator, len(self._vehicles), seconds, random_state
+    )
+    if self._autopilot:
+      self._autopilot.begin(physics, air, self._belief)
+
+  def _place(
     self,
     physics: mjcf.Physics,
     jitter_m: float,
     random_state: np.random.RandomState,
   ) -> None:
-    """Puts every vehicle where an episode begins.
-
-    Args:
-      physics: The compiled model.
-      jitter_m: Bound of each vehicle's x and y offset.
-      random_state: Of the episode.
-    """
+    """Puts every vehicle where an episode begins."""
     poses = layouts.jittered(
       [self._poses[name] for name in self._vehicles], jitter_m, random_state
     )
@@ -122,36 +112,10 @@ class Fleet:
         np.array([math.cos(half_rad), 0.0, 0.0, math.sin(half_rad)]),
       )
 
-  def begin(
-    self,
-    physics: mjcf.Physics,
-    parts: Made,
-    random_state: np.random.RandomState,
-  ) -> None:
-    """Begins an episode, with every vehicle at its place.
-
-    Args:
-      physics: The compiled model.
-      parts: What the task is made of.
-      random_state: Of the episode: air and errors are drawn, if there are any.
-    """
-    seconds, height_m = parts.duration_s, parts.agreement.hover_height_m
-    air = weather.draw(parts.air, height_m, seconds, random_state)
-    self._belief = estimators.draw(
-      parts.estimator, len(self._vehicles), seconds, random_state
-    )
-    if self._autopilot:
-      self._autopilot.begin(physics, air, self._belief)
-
   def before_substep(self, physics: mjcf.Physics) -> None:
     """Flies what has to be flown from one physics step to the next."""
     if self._autopilot:
       self._autopilot.before_substep(physics)
-
-  def let_drift(self, sways: Mapping[str, drift_lib.Sway]) -> None:
-    """Takes how each vehicle drifts in an episode."""
-    self._sways = sways
-    self._drifts: tuple[float, Offsets] = math.nan, {}
 
   def command(
     self,

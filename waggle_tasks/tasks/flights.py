@@ -1,6 +1,6 @@
 """The observers' commands: who asked, who may fly, and what became of it."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 
 from dm_control import mjcf
 import numpy as np
@@ -9,8 +9,8 @@ from waggle_tasks.arenas import layouts
 from waggle_tasks.protocol import flight, payload, reference
 from waggle_tasks.tasks import escort as escort_lib
 from waggle_tasks.tasks import fleet as fleet_lib
+from waggle_tasks.tasks import objectives, progress, safety
 from waggle_tasks.tasks import parts as parts_lib
-from waggle_tasks.tasks import progress, safety
 
 _LEVEL = np.array([1.0, 1.0, 0.0])
 
@@ -30,12 +30,14 @@ class Flights:
     self._agreement = parts.agreement
     self._minimum_spacing_m = parts.minimum_spacing_m
     homes_m = {name: np.array(pose.position_m) for name, pose in homes.items()}
-    self._dancers, self._homes = parts.dancers, homes
+    self._dancers = {n: parts.vehicles[n] for n in parts.performances}
+    self._homes = homes
     dancers_m = [homes_m.pop(name) for name in self._dancers]
     self._escort: escort_lib.Escort | None = None
     if parts.safety == 'avoid':
       self._escort = escort_lib.Escort(parts, dancers_m)
-    message, self._displacement_m = parts.performance.message, None
+    message = parts.performances[parts.performer].message
+    self._displacement_m: np.ndarray | None = None
     if isinstance(message, payload.Payload):  # Data command nothing.
       self._displacement_m = message.displacement_m(self._agreement.units)
     self._gates: list[safety.Gate] = []
@@ -73,7 +75,7 @@ class Flights:
 
   def follow(
     self,
-    wanted: Sequence[reference.Reference],
+    wanted: Mapping[str, reference.Reference],
     fleet: fleet_lib.Fleet,
     physics: mjcf.Physics,
     time_s: float,
@@ -81,23 +83,20 @@ class Flights:
     """The references that controllers get for those that observers ask for.
 
     Args:
-      wanted: Each observer's reference.
+      wanted: Each observer's reference, by its name.
       fleet: The vehicles.
       physics: Where they are.
       time_s: Simulation time.
     """
     positions_m = fleet.positions_m(physics)
-    for gate, way, each in zip(
-      self._gates, self._progress, wanted, strict=True
-    ):
-      plan = gate.request(each, positions_m[gate.name], time_s)
+    for gate, way in zip(self._gates, self._progress, strict=True):
+      plan = gate.request(wanted[gate.name], positions_m[gate.name], time_s)
       if plan is not None and gate.name not in self._requests:
         self._requests[gate.name] = plan
         self._aim(gate, way, fleet, positions_m[gate.name], time_s)
     self._judge(positions_m, time_s)
     followed = {
-      gate.name: gate.follow(each, time_s)
-      for gate, each in zip(self._gates, wanted, strict=True)
+      gate.name: gate.follow(wanted[gate.name], time_s) for gate in self._gates
     }
     if self._escort:
       refused = [gate.name for gate in self._gates if gate.refusal]
@@ -140,7 +139,7 @@ class Flights:
     """Where dancers are going to be: they may say their message again."""
 
     def way(name: str) -> safety.Other:
-      home, dancer = self._homes[name], self._dancers[name].vehicle
+      home, dancer = self._homes[name], self._dancers[name]
 
       def told_m(at_s: float) -> np.ndarray:
         home_m = np.array(home.position_m)
@@ -184,15 +183,17 @@ class Flights:
     positions_m: Mapping[str, np.ndarray],
     velocities_mps: Mapping[str, np.ndarray],
     authorised: bool,
-  ) -> list[float]:
-    """Takes one frame's truth, less the drift; returns everybody's reward.
+  ) -> dict[str, objectives.Moment]:
+    """Takes one frame's truth, less the drift; tells what has become of all.
 
     Args:
       positions_m: By name, (3,) true positions.
       velocities_mps: By name, (3,) true velocities.
       authorised: Whether a whole message has been flown.
     """
-    return [
-      each.update(positions_m[gate.name], velocities_mps[gate.name], authorised)
+    return {
+      gate.name: each.update(
+        positions_m[gate.name], velocities_mps[gate.name], authorised
+      )
       for gate, each in zip(self._gates, self._progress, strict=True)
-    ]
+    }

@@ -6,6 +6,7 @@ import numpy as np
 
 from waggle_tasks.protocol import agreement as agreement_lib
 from waggle_tasks.protocol import flight
+from waggle_tasks.tasks import objectives
 
 # An episode goes on a little longer than the 2 s of holding, so that they are
 # found however arrival is measured.
@@ -37,7 +38,7 @@ class Progress:
 
   def update(
     self, position_m: np.ndarray, velocity_mps: np.ndarray, authorised: bool
-  ) -> float:
+  ) -> objectives.Moment:
     """Takes one frame's truth.
 
     Args:
@@ -46,14 +47,14 @@ class Progress:
       authorised: Whether a whole message has been flown.
 
     Returns:
-      The reward: 1 on arrival, -1 on the first unauthorised motion, else 0.
+      What has become of it.
     """
     if not authorised or self.target_m is None:
       moved = np.linalg.norm(position_m - self.home_m) > MOTION_M
       if moved and not self.trespassed:
         self.trespassed = True
-        return -1.0
-      return 0.0
+        return objectives.Moment(trespassed=True)
+      return objectives.Moment()
     there = flight.is_arrived(
       float(np.linalg.norm(position_m - self.target_m)),
       float(np.linalg.norm(velocity_mps)),
@@ -65,8 +66,8 @@ class Progress:
       flight.ARRIVAL_DWELL_S
     ):
       self.arrived = True
-      return 1.0
-    return 0.0
+      return objectives.Moment(arrived=True)
+    return objectives.Moment()
 
   @property
   def done(self) -> bool:
