@@ -20,6 +20,7 @@ _DECOYS: dict[str, Any] = {
   'control': 'circles,diagonals,random_walk,navigation,swapped,repeated,'
   'half_frame'
 }  # fmt: skip
+_FEW_DECOYS: dict[str, Any] = {'control': 'random_walk,repeated,half_frame'}
 _FAST = (
   '--half_width_m=0.12', '--start_height_m=0.25', '--gesture_s=2',
   '--initial_hover_s=3.2', '--settle_s=0.6', '--gap_s=2', '--lead_in_s=1.8',
@@ -56,7 +57,9 @@ def _hidden(receiver: str) -> kinds.Claim:
 
 def _disturbed(*flags: str, **grid: str) -> kinds.Claim:
   values: dict[str, Any] = grid  # None of the names of other arguments.
-  return _sweep('disturbances', 1, *flags, how=kinds.PART, **values)
+  return _sweep(
+    'disturbances', 1, *flags, observers=2, how=kinds.PART, **values
+  )
 
 
 _SWAY = '--observer_drift_m=0.002', '--observer_yaw_drift_deg=0.1'
@@ -92,17 +95,17 @@ CLAIMS = {
   'sway-default': kinds.Claim(
     'sway-default', kinds.PART,
     (
-      'sweep', '--receiver=view_bank', '--repeats=1',
+      'sweep', '--receiver=view_bank', '--repeats=1', '--observers=1',
       '--grid=observer_drift_m=0.002', '--grid=observer_yaw_drift_deg=0.1',
     ),
   ),
   # Pictures of a camera that sways are drawn whole, which takes long.
   'sway-more': _sweep(
-    'sway', 1, '--observer_yaw_drift_deg=0.3', observers=2, how=kinds.PART,
+    'sway', 1, '--observer_yaw_drift_deg=0.3', observers=1, how=kinds.PART,
     observer_drift_m='0.005',
   ),
   'sway-noise': _sweep(
-    'sway', 1, *_SWAY, observers=2, how=kinds.PART, noise_sigma='10'
+    'sway', 1, *_SWAY, observers=1, how=kinds.PART, noise_sigma='10'
   ),
   'sway-dancer': _sweep(
     'sway', 1, how=kinds.PART, performer_drift_m='0.002'
@@ -135,7 +138,7 @@ CLAIMS = {
   ),
   'clutter': _sweep('clutter', 2, '--floor=clutter', table=0, walls='clutter'),
   'clutter-sway': _sweep(
-    'clutter', 1, '--floor=clutter', *_SWAY, observers=2, how=kinds.PART,
+    'clutter', 1, '--floor=clutter', *_SWAY, observers=1, how=kinds.PART,
     walls='clutter',
   ),
   'blackout': _sweep(
@@ -161,10 +164,10 @@ CLAIMS = {
   'decoys': _sweep('decoys', 1, how=kinds.PART, **_DECOYS),
   'decoys-wide': _sweep(
     'decoys-wide', 1, '--distance_m=1.0', '--half_span_deg=75', how=kinds.PART,
-    **_DECOYS,
+    **_FEW_DECOYS,
   ),
   'decoys-noise': _sweep(
-    'decoys-noise', 1, '--noise_sigma=10', how=kinds.PART, **_DECOYS
+    'decoys-noise', 1, '--noise_sigma=10', how=kinds.PART, **_FEW_DECOYS
   ),
   # Of the receiver that it speaks of: the tables of others are left out.
   'together': kinds.Claim(
