@@ -1,14 +1,15 @@
-"""Lets pairs of vehicles learn a language of their own, and draws how.
+"""Lets vehicles learn a language, or to read one, and draws how.
 
-A speaker gets a payload and chooses the heights of a dance; a listener gets the
-track of that dance, from a place, at a time and with a tracker's errors that
-are drawn, and says the payload. Both know nothing at first, and learn from what
-is understood. Prints the share of payloads that is understood, for each seed,
-beside that of a language that was made by hand. --output keeps the curves and
-draws them.
+--game=dance: pairs learn a language of their own. A speaker gets a payload and
+chooses the heights of a dance; a listener gets the track of that dance, from a
+place, at a time and with a tracker's errors that are drawn, and says the
+payload. --game=read: readers learn what dances of swift mean, from such tracks.
+All know nothing at first, and learn from what they earn. Prints the share of
+payloads that is understood, for each seed, beside that of what was made by
+hand. --output keeps the curves and draws them.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 import json
 import pathlib
 import sys
@@ -21,83 +22,137 @@ from waggle_tasks import errors
 from waggle_tasks.experiments import launch
 from waggle_tasks.experiments.machine import files, table
 from waggle_tasks.experiments.record import folders
-from waggle_tasks.experiments.results import learning_figure
 from waggle_tasks.protocol import checks
 
 if TYPE_CHECKING:
-  from waggle_tasks.rl import learners
+  from waggle_tasks.experiments.results import learning_figure
 
+_GAME = flags.DEFINE_enum(
+  'game', 'dance', ['dance', 'read'], 'What is learned.'
+)
 _PAYLOADS = flags.DEFINE_integer(
-  'payloads', 8, 'How many payloads there are to tell apart, 2 to 1024.'
-)
+  'payloads', None,
+  'Of dance: how many payloads there are to tell apart, 2 to 1024; unset, 8.',
+)  # fmt: skip
 _STROKES = flags.DEFINE_integer(
-  'strokes', 3, 'How many strokes a dance has, 3 to 16.'
-)
-_SEEDS = flags.DEFINE_integer('seeds', 5, 'How many pairs learn, 1 to 100.')
+  'strokes', None,
+  'Of dance: how many strokes a dance has, 3 to 16; unset, 3.',
+)  # fmt: skip
+_SEEDS = flags.DEFINE_integer('seeds', 5, 'How many of them learn, 1 to 100.')
 _UPDATES = flags.DEFINE_integer(
-  'updates', 1000, 'How often they learn, of 512 dances each.'
-)
+  'updates', None,
+  'How often they learn; unset, 1000 times of 512 dances in dance, and 2500'
+  ' times of 256 dances in read.',
+)  # fmt: skip
 _OUTPUT = flags.DEFINE_string(
   'output', None,
-  'Folder to put curves.json, dance.svg and dance.png in; needs matplotlib.',
+  'Folder to put curves.json and a picture in, .svg and .png, of the name of'
+  ' the game; needs matplotlib.',
 )  # fmt: skip
 
-_HEADER = 'pair', 'after a tenth', 'after a half', 'in the end'
+_HEADER = 'learner', 'after a tenth', 'after a half', 'in the end'
 
 
 def main(argv: Sequence[str]) -> int:
   """Trains, prints the table and draws; returns the exit status."""
   del argv
-  from waggle_tasks.rl import by_hand, learners, signals
-
   error = errors.WaggleError
-  payloads = checks.integer('payloads', _PAYLOADS.value, 2, 1024, error)
-  strokes = checks.integer('strokes', _STROKES.value, 3, 16, error)
   seeds = checks.integer('seeds', _SEEDS.value, 1, 100, error)
-  numbers = learners.Numbers(updates=_UPDATES.value)
+  train, by_hand = _dance() if _GAME.value == 'dance' else _read()
   if _OUTPUT.value is not None:
     folders.check_writable(pathlib.Path(_OUTPUT.value))
-  channel = signals.Channel(strokes)
-  curves = [
-    learners.train(payloads, channel, numbers, seed)
-    for seed in tqdm.tqdm(range(seeds), desc='pairs')
-  ]
-  usual = by_hand.understood(payloads, channel)
+  curves = [train(seed) for seed in tqdm.tqdm(range(seeds), desc=_GAME.value)]
+  usual = by_hand()
   print(table.render(_HEADER, [_row(curve) for curve in curves]))
   print(f'\nmade by hand: {usual:.3f}')
   if _OUTPUT.value is not None:
+    from waggle_tasks.experiments.results import learning_figure
+
     folder = pathlib.Path(_OUTPUT.value)
-    drawn = learning_figure.draw(curves, usual, folder)
+    drawn = learning_figure.draw(_GAME.value, curves, usual, folder)
     print(*drawn, _keep(curves, usual, folder), sep='\n')
   return 0
 
 
-def _row(curve: 'learners.Curve') -> tuple[str, ...]:
-  """The share that a pair understood, at three times."""
+_Game = tuple[
+  Callable[[int], 'learning_figure.Curve'], Callable[[], float]
+]  # How a seed learns, and how well what was made by hand does.
+
+
+def _dance() -> _Game:
+  """Pairs that learn a language of their own."""
+  from waggle_tasks.rl import by_hand, learners, signals
+
+  error = errors.WaggleError
+  payloads = checks.integer('payloads', _or(_PAYLOADS, 8), 2, 1024, error)
+  strokes = checks.integer('strokes', _or(_STROKES, 3), 3, 16, error)
+  numbers = learners.Numbers(updates=_or(_UPDATES, 1000))
+  channel = signals.Channel(strokes)
+
+  def train(seed: int) -> learners.Curve:
+    return learners.train(payloads, channel, numbers, seed)
+
+  return train, lambda: by_hand.understood(payloads, channel)
+
+
+def _read() -> _Game:
+  """Readers that learn what dances mean."""
+  from waggle_tasks.experiments.episodes import tracks_by_hand
+  from waggle_tasks.rl import glimpses, readers
+
+  for flag in (_PAYLOADS, _STROKES):
+    if flag.value is not None:
+      raise flags.Error(
+        f'--{flag.name} must not be given with --game=read, whose language has'
+        ' its own'
+      )
+  seen = glimpses.Glimpses()
+  numbers = readers.Numbers(updates=_or(_UPDATES, readers.Numbers.updates))
+  return (
+    lambda seed: readers.train(seen, numbers, seed),
+    lambda: tracks_by_hand.share(seen),
+  )
+
+
+def _or(flag: flags.FlagHolder[int | None], usual: int) -> int:
+  return usual if flag.value is None else flag.value
+
+
+def _row(curve: 'learning_figure.Curve') -> tuple[str, ...]:
+  """The share that was understood, at three times."""
   last = len(curve.right) - 1
   shares = [curve.right[k] for k in (last // 10, last // 2, last)]
   return (f'seed {curve.seed}', *(f'{share:.3f}' for share in shares))
 
 
 def _keep(
-  curves: Sequence['learners.Curve'], by_hand: float, folder: pathlib.Path
+  curves: Sequence['learning_figure.Curve'],
+  by_hand: float,
+  folder: pathlib.Path,
 ) -> pathlib.Path:
   """Writes the curves as JSON."""
   data = {
-    'format': 1,
+    'format': 2,
+    'game': _GAME.value,
     'by_hand': by_hand,
-    'pairs': [
+    'learners': [
       {
         'seed': curve.seed,
         'episodes': curve.episodes.astype(int).tolist(),
         'understood': curve.right.tolist(),
-        'heights': curve.means.tolist(),
+        **_language(curve),
       }
       for curve in curves
     ],
   }
   text = json.dumps(data, indent=2) + '\n'
   return files.replace(folder / 'curves.json', text.encode())
+
+
+def _language(curve: 'learning_figure.Curve') -> dict[str, list[list[float]]]:
+  """What a pair has agreed to dance for each payload, where there is a pair."""
+  means = getattr(curve, 'means', None)
+  return {} if means is None else {'heights': means.tolist()}
 
 
 if __name__ == '__main__':

@@ -125,7 +125,8 @@ def test_the_command_keeps_curves_and_draws_them(
   assert 'seed 1' in child.stdout
   assert 'made by hand: 1.000' in child.stdout
   kept = json.loads((tmp_path / 'out' / 'curves.json').read_text())
-  assert [pair['seed'] for pair in kept['pairs']] == [0, 1]
+  assert [each['seed'] for each in kept['learners']] == [0, 1]
+  assert np.shape(kept['learners'][0]['heights']) == (4, 3)
   assert (tmp_path / 'out' / 'dance.png').stat().st_size > 10_000
 
 

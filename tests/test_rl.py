@@ -14,7 +14,7 @@ import pytest
 
 from waggle_tasks import Team, rl
 from waggle_tasks.protocol import payload
-from waggle_tasks.rl import commands, draws, needs, read
+from waggle_tasks.rl import commands, draws, glimpses, needs
 
 SMALL = {'language': 'swift', 'camera_width_px': 64, 'camera_height_px': 64}
 BLIND = {'language': 'swift', 'observe': ('time_s', 'position_m')}
@@ -340,7 +340,7 @@ def nearest(env: rl.Read, heights: np.ndarray) -> str:
   """The payload whose dance fits heights best, at any scale and time."""
   best = {}
   for value in range(64):
-    path = read._path(env._agreement, value)[:, 1]
+    path = glimpses.paths_m(env._glimpses.agreement)[value, :, 1]
     for wait in range(len(heights) - len(path) + 1):
       part = heights[wait : wait + len(path)]
       scale = part @ path / (path @ path)

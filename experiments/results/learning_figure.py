@@ -1,8 +1,8 @@
-"""How pairs learned a language of their own, as a picture by matplotlib."""
+"""How learners learned, as a picture by matplotlib."""
 
 from collections.abc import Sequence
 import pathlib
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
@@ -12,20 +12,37 @@ if TYPE_CHECKING:
   from matplotlib import axes
   from matplotlib import figure as figure_lib
 
-  from waggle_tasks.rl import learners
+_SIDE_IN = 4.5, 3.4
 
-NAMES = 'dance.svg', 'dance.png'
-_SIZE_IN = 9.0, 3.4
+
+class Curve(Protocol):
+  """How one seed learned; with `means`, (payloads, strokes), a language too."""
+
+  @property
+  def seed(self) -> int:
+    """Of all that was drawn."""
+    ...
+
+  @property
+  def episodes(self) -> np.ndarray:
+    """(N,) played before each point."""
+    ...
+
+  @property
+  def right(self) -> np.ndarray:
+    """(N,) share of payloads that were understood."""
+    ...
 
 
 def draw(
-  curves: Sequence['learners.Curve'], by_hand: float, folder: pathlib.Path
+  game: str, curves: Sequence[Curve], by_hand: float, folder: pathlib.Path
 ) -> list[pathlib.Path]:
-  """Writes the curves, and the language of the first seed, into one picture.
+  """Writes the curves into one picture, beside the language of the first seed.
 
   Args:
+    game: What was learned, which names the picture.
     curves: Of one seed each.
-    by_hand: The share that is understood of a language made by hand.
+    by_hand: The share that is understood of what was made by hand.
     folder: Where the picture is put.
 
   Returns:
@@ -36,17 +53,20 @@ def draw(
   """
 
   def paint(figure: 'figure_lib.Figure') -> None:
-    left, right = figure.subplots(1, 2)
-    _curves(left, curves, by_hand)
-    _language(right, curves[0])
+    axes = figure.subplots(1, count, squeeze=False)[0]
+    _curves(axes[0], curves, by_hand)
+    if means is not None:
+      _language(axes[1], curves[0].seed, means)
 
+  means = getattr(curves[0], 'means', None)
+  count = 1 if means is None else 2
+  size = count * _SIDE_IN[0], _SIDE_IN[1]
+  names = f'{game}.svg', f'{game}.png'
   missing = f'Pictures of learners {figures.NEEDED}.'
-  return figures.write(paint, folder, NAMES, _SIZE_IN, missing)
+  return figures.write(paint, folder, names, size, missing)
 
 
-def _curves(
-  axis: 'axes.Axes', curves: Sequence['learners.Curve'], by_hand: float
-) -> None:
+def _curves(axis: 'axes.Axes', curves: Sequence[Curve], by_hand: float) -> None:
   episodes = curves[0].episodes / 1000
   shares = np.stack([curve.right for curve in curves])
   for share in shares:
@@ -65,14 +85,14 @@ def _curves(
   axis.legend(loc='lower right', frameon=False)
 
 
-def _language(axis: 'axes.Axes', curve: 'learners.Curve') -> None:
+def _language(axis: 'axes.Axes', seed: int, means: np.ndarray) -> None:
   colours = (
     palette.BLUE, palette.ORANGE, palette.GREEN, palette.VERMILLION,
     palette.PURPLE, palette.SKY, palette.BLACK, palette.YELLOW,
   )  # fmt: skip
   marks = 'osD^vPX*'
-  strokes = curve.means.shape[1]
-  for number, heights in enumerate(curve.means):
+  strokes = means.shape[1]
+  for number, heights in enumerate(means):
     corners = [0.0, *heights, 0.0]
     axis.plot(
       range(strokes + 2), corners, color=colours[number % len(colours)],
@@ -81,4 +101,4 @@ def _language(axis: 'axes.Axes', curve: 'learners.Curve') -> None:
   axis.set_xticks(range(strokes + 2))
   axis.set_xlabel('stroke')
   axis.set_ylabel('height, in 0.14 m')
-  axis.set_title(f'what seed {curve.seed} dances for each payload', size=10)
+  axis.set_title(f'what seed {seed} dances for each payload', size=10)

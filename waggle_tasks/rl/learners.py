@@ -1,16 +1,16 @@
 """Learners of `Dance` that know nothing of each other: two times REINFORCE.
 
-Williams (1992), doi:10.1007/BF00992696, with Adam (Kingma and Ba, 2015,
-arXiv:1412.6980). The speaker has a mean of each height for each payload, and
-tries others about it; the listener has a network of one hidden layer and says
-what it draws. Each learns from its own reward alone, by numpy.
+Williams (1992), doi:10.1007/BF00992696, with Adam. The speaker has a mean of
+each height for each payload, and tries others about it; the listener has a
+network of one hidden layer and says what it draws. Each learns from its own
+reward alone, by numpy.
 """
 
 import dataclasses
 
 import numpy as np
 
-from waggle_tasks.rl import needs, signals
+from waggle_tasks.rl import adam, needs, signals
 
 _LEFT_M = 0.03  # In half widths: who is farther from its first place dances.
 _EVERY = 20  # Updates between two points of a curve.
@@ -54,28 +54,6 @@ class Numbers:
         )
 
 
-class Adam:
-  """Moves numbers along their gradient, each at a pace of its own."""
-
-  def __init__(self, values: list[np.ndarray], rate: float) -> None:
-    """Takes the arrays that it changes, and its step."""
-    self._values, self._rate, self._count = values, rate, 0
-    self._mean = [np.zeros_like(each) for each in values]
-    self._square = [np.zeros_like(each) for each in values]
-
-  def climb(self, gradients: list[np.ndarray]) -> None:
-    """One step up."""
-    self._count += 1
-    for value, gradient, mean, square in zip(
-      self._values, gradients, self._mean, self._square, strict=True
-    ):
-      mean += 0.1 * (gradient - mean)
-      square += 0.001 * (gradient**2 - square)
-      first = mean / (1 - 0.9**self._count)
-      second = square / (1 - 0.999**self._count)
-      value += self._rate * first / (np.sqrt(second) + 1e-8)
-
-
 class Speaker:
   """Chooses heights for payloads.
 
@@ -92,7 +70,7 @@ class Speaker:
   ) -> None:
     """Begins near home, by what is drawn."""
     self.means = rng.uniform(-0.3, 0.3, (payloads, strokes))
-    self._adam = Adam([self.means], numbers.speaker_rate)
+    self._adam = adam.Adam([self.means], numbers.speaker_rate)
 
   def act(
     self, meant: np.ndarray, sigma: float, rng: np.random.Generator
@@ -136,7 +114,7 @@ class Listener:
       rng.normal(0, 0.01, (numbers.hidden, payloads)),
       np.zeros(payloads),
     ]
-    self._adam = Adam(self._parts, numbers.listener_rate)
+    self._adam = adam.Adam(self._parts, numbers.listener_rate)
 
   def look(self, tracks: np.ndarray) -> np.ndarray:
     """What it makes of tracks, (B, window + 1).
