@@ -146,10 +146,13 @@ class SeekerReceiver:
       ReceiverError: if the camera has a lens that bends, or is not level: a
         part of its picture is none of a pinhole.
     """
-    if not agreement.camera.is_plain:
+    camera = agreement.camera
+    if not camera.is_plain:
       raise group.ReceiverError(
         "`receiver` 'seeker' must have a level camera without a lens that"
-        f' bends: got {agreement.camera}'
+        f' bends: got `pitch_deg` {camera.pitch_deg:g}, `roll_deg`'
+        f" {camera.roll_deg:g} and `lens` {camera.lens.model!r}; 'joint' reads"
+        ' with any, where the dancer is ahead'
       )
     self._config = config = config or self.DEFAULT
     self._agreement = agreement

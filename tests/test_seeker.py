@@ -107,5 +107,8 @@ def test_a_camera_that_bends_lines_or_is_not_level_is_refused(
   bent: camera.Camera,
 ) -> None:
   agreed = dataclasses.replace(AGREED, camera=bent)
-  with pytest.raises(group.ReceiverError, match='must have a level camera'):
+  with pytest.raises(group.ReceiverError, match='a level camera') as caught:
     receivers.make('seeker', agreed)
+  told = str(caught.value)
+  assert f'`pitch_deg` {bent.pitch_deg:g}' in told
+  assert len(told) < 250
