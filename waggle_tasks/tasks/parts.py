@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 import dataclasses
+import functools
 
 from waggle_tasks import errors
 from waggle_tasks.arenas import flight_room, layouts
@@ -88,7 +89,7 @@ class Parts:
     wander_m = self.drift.near_m + estimators.near_m(self.estimator)
     return safety_lib.kept_m(wander_m, self.minimum_spacing_m)
 
-  @property
+  @functools.cached_property
   def observers(self) -> dict[str, observer.Observer]:
     """All that see, by their names."""
     return {
@@ -97,12 +98,12 @@ class Parts:
       if isinstance(role.vehicle, observer.Observer)
     }
 
-  @property
+  @functools.cached_property
   def vehicles(self) -> dict[str, performer.Performer]:
     """All vehicles, by their names."""
     return {role.name: role.vehicle for role in self.roles}
 
-  @property
+  @functools.cached_property
   def performances(self) -> dict[str, performance_lib.Performance]:
     """What each that dances by itself dances, by their names."""
     return {
