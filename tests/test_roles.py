@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from waggle_tasks import conversation, conversations, registry
-from waggle_tasks.entities import observer
+from waggle_tasks.entities import observer, performer
 from waggle_tasks.protocol import gestures, timing
-from waggle_tasks.tasks import broadcast, objectives, parts, talk
+from waggle_tasks.tasks import broadcast, objectives, parts, roles, talk
 
 Fixture = Callable[..., object]
 HURRIED = {
@@ -52,6 +52,24 @@ def test_a_dancer_with_an_eye_sees_and_dances_whatever_its_agent_says(
     )  # fmt: skip
     seen_m = timestep.observation[0]['position_m']
     assert np.abs(seen_m - place_m).max() < 0.004 + 0.05 * np.abs(rate).max()
+  environment.close()
+
+
+def test_a_vehicle_without_an_eye_or_a_dance_hovers(
+  episode: Fixture, hover: Fixture
+) -> None:
+  usual = made()
+  place = dataclasses.replace(usual.poses['performer'], position_m=(1, 0.5, 1))
+  idle = roles.Role(performer.Performer('idle'), place)
+  task = broadcast.Broadcast(
+    dataclasses.replace(usual, duration_s=3.0, roles=(idle, *usual.roles))
+  )
+  environment = blind(task)
+  for timestep in episode(environment, hover):
+    assert len(timestep.observation) == 1
+    where_m = task.positions_m(environment.physics)['idle']
+    np.testing.assert_allclose(where_m, (1, 0.5, 1), atol=1e-3)
+  assert task.sends_message
   environment.close()
 
 

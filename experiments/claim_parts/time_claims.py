@@ -7,6 +7,7 @@ _WHY = {
   'timings': 'times and memory, which differ between runs',
   'learners': 'times, which differ between runs',
   'dance': 'what is learned differs a little between kinds of processors',
+  'learned-reading': 'what is learned differs a little between processors',
   'board': 'its times are those of one machine',
   'pictures': 'a test compares pictures with every run',
 }

@@ -105,11 +105,14 @@ class Parts:
 
   @functools.cached_property
   def performances(self) -> dict[str, performance_lib.Performance]:
-    """What each that dances by itself dances, by their names."""
+    """What each that has no agent flies, and each that dances, by their names.
+
+    Who has neither an eye nor a performance hovers.
+    """
     return {
-      role.name: role.performance
+      role.name: role.performance or performance_lib.Performance()
       for role in self.roles
-      if role.performance is not None
+      if role.performance is not None or not role.sees
     }
 
   @property
@@ -119,8 +122,9 @@ class Parts:
     Raises:
       PartsError: if nobody dances.
     """
-    for name in self.performances:
-      return name
+    for role in self.roles:
+      if role.performance is not None:
+        return role.name
     raise PartsError('`roles` must hold one with a `performance`: none has one')
 
   def saying(self, performance: performance_lib.Performance) -> 'Parts':

@@ -18,7 +18,8 @@ class Role:
   Attributes:
     vehicle: The vehicle, which belongs to one task only.
     pose: Where it begins.
-    performance: What it dances by itself, or None.
+    performance: What it dances by itself, or None; without an eye it then
+      hovers.
     objective: What it is rewarded for.
   """
 
