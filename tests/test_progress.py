@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from waggle_tasks.tasks import progress
+from waggle_tasks.tasks import objectives, progress
 
 HOME_M = np.array([0.0, -1.3, 1.3])
 TARGET_M = HOME_M + np.array([0.0, 0.4, 0.0])
@@ -13,6 +13,17 @@ REST = np.zeros(3)
 @pytest.fixture
 def mover() -> progress.Progress:
   return progress.Progress(HOME_M, TARGET_M)
+
+
+def reward(
+  each: progress.Progress,
+  place_m: np.ndarray,
+  velocity_mps: np.ndarray,
+  authorised: bool,
+) -> float:
+  """What a frame earns."""
+  moment = each.update(place_m, velocity_mps, authorised)
+  return objectives.Arrive().reward(moment)
 
 
 def rewards(
@@ -25,7 +36,7 @@ def rewards(
   """The rewards of frames at a distance from the target, along x."""
   place_m = TARGET_M + np.array([offset_m, 0.0, 0.0])
   velocity = np.array([0.0, speed_mps, 0.0])
-  return [each.update(place_m, velocity, authorised) for _ in range(count)]
+  return [reward(each, place_m, velocity, authorised) for _ in range(count)]
 
 
 def test_arrival_is_rewarded_once_after_standing_for_0_4_s(
@@ -103,15 +114,15 @@ def test_who_moved_early_never_arrives(mover: progress.Progress) -> None:
 @pytest.mark.parametrize('authorised', [False, True])
 def test_without_a_message_every_motion_is_early(authorised: bool) -> None:
   waiting = progress.Progress(HOME_M, None)
-  assert waiting.update(HOME_M, REST, authorised) == 0
+  assert reward(waiting, HOME_M, REST, authorised) == 0
   near_m, far_m = HOME_M + 0.005, HOME_M + 0.006  # Times sqrt(3).
-  assert waiting.update(near_m, REST, authorised) == 0
-  assert waiting.update(far_m, REST, authorised) == -1
+  assert reward(waiting, near_m, REST, authorised) == 0
+  assert reward(waiting, far_m, REST, authorised) == -1
   assert not waiting.done
 
 
 def test_staying_at_home_earns_nothing(mover: progress.Progress) -> None:
   for authorised in (False, True):
-    got = [mover.update(HOME_M, REST, authorised) for _ in range(50)]
+    got = [reward(mover, HOME_M, REST, authorised) for _ in range(50)]
     assert got == [0.0] * 50
   assert not mover.done
