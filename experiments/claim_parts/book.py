@@ -11,6 +11,7 @@ from waggle_tasks.experiments.claim_parts import (
   colony_claims,
   eye_claims,
   kinds,
+  link_claims,
   sensing_claims,
   talk_claims,
   time_claims,
@@ -115,11 +116,6 @@ CLAIMS = {
     'crossings', kinds.UNCHECKED, detail='a thousand crossings take 13 minutes'
   ),
   'languages': kinds.Claim('languages', kinds.TEXT, ('languages',)),
-  'link-hidden': _sweep(
-    'link-hidden', 1, '--replays=10', '--language=swift', receiver='joint',
-    observers=1, how=kinds.PART, control='seven_bits,begun_anew,run_together',
-    distance_m='1.3',
-  ),
   'gentle': _sweep(
     'gentle', 1, '--language=gentle', '--dynamics=rotors', receiver='joint',
     observers=1, distance_m='3.0', bearing_deg='75',
@@ -191,41 +187,6 @@ CLAIMS = {
     'last-rest', 2, '--freeze_length_s=600', observers=3, table=0,
     receiver='klt', freeze_s='93', noise_sigma='0',
   ),
-  'link': kinds.Claim(
-    'link', kinds.ROWS,
-    (
-      'link', '--schemes=swift,swift x3', '--conditions=calm,blackouts',
-      '--broadcasts=4',
-    ),
-  ),
-  'link-bears': kinds.Claim(
-    'link-bears', kinds.ROWS,
-    (
-      'link', '--schemes=swift x3', '--conditions=mocap,bystanders',
-      '--broadcasts=6',
-    ),
-  ),
-  'link-hover': kinds.Claim(
-    'link-hover', kinds.ROWS,
-    ('link', '--schemes=swift', '--conditions=rotors', '--broadcasts=20'),
-  ),
-  'link-paper': kinds.Claim(
-    'link-paper', kinds.ROWS,
-    (
-      'link', '--schemes=paper', '--conditions=mocap',
-      '--broadcasts=2',
-    ),
-  ),
-  'link-places': kinds.Claim(
-    'link-places', kinds.ROWS,
-    (
-      'link', '--schemes=swift', '--conditions=calm,noise', '--broadcasts=1',
-      '--distances=0.6,1.3,3', '--bearings=0,60',
-    ),
-  ),
-  'link-codes': kinds.Claim(
-    'link-codes', kinds.UNCHECKED, detail='ten million messages take minutes'
-  ),
   'paper': kinds.Claim(
     'paper', kinds.ROWS,
     (
@@ -266,6 +227,7 @@ CLAIMS = {
   ),
   **colony_claims.CLAIMS,
   **eye_claims.CLAIMS,
+  **link_claims.CLAIMS,
   **sensing_claims.CLAIMS,
   **talk_claims.CLAIMS,
   **time_claims.CLAIMS,
