@@ -36,6 +36,9 @@ CLAIMS = {
       '--broadcasts=6',
     ),
   ),
+  'link-long': kinds.Claim(
+    'link-long', kinds.UNCHECKED, detail='fifty messages of half a minute'
+  ),
   'link-hover': kinds.Claim(
     'link-hover', kinds.ROWS,
     ('link', '--schemes=swift', '--conditions=rotors', '--broadcasts=20'),
