@@ -4,8 +4,9 @@ README.md and docs/ mark what was printed with the name of a claim. For each a
 small part is flown again with the command's own functions; a line says whether
 both agree. Figures that follow from others are worked out anew, every one of
 them, as `figures`; nothing is flown for that, nor for numbers in sentences.
-Times are not compared, which is said too. All of it takes about 20 minutes on
-two cores. Exit status 0 when everything agrees, 1 otherwise, 2 on bad input.
+Times are not compared, which is said too. All of it takes about an hour on two
+cores that have other work. Exit status 0 when everything agrees, 1 otherwise, 2
+on bad input.
 """
 
 from collections.abc import Iterator, Sequence

@@ -25,7 +25,7 @@ from waggle_tasks.experiments.record import folders
 from waggle_tasks.protocol import checks
 
 if TYPE_CHECKING:
-  from waggle_tasks.experiments.results import learning_figure
+  from waggle_tasks.rl import curve
 
 _GAME = flags.DEFINE_enum(
   'game', 'dance', ['dance', 'read'], 'What is learned.'
@@ -63,7 +63,7 @@ def main(argv: Sequence[str]) -> int:
     folders.check_writable(pathlib.Path(_OUTPUT.value))
   curves = [train(seed) for seed in tqdm.tqdm(range(seeds), desc=_GAME.value)]
   usual = by_hand()
-  print(table.render(_HEADER, [_row(curve) for curve in curves]))
+  print(table.render(_HEADER, [_row(each) for each in curves]))
   print(f'\nmade by hand: {usual:.3f}')
   if _OUTPUT.value is not None:
     from waggle_tasks.experiments.results import learning_figure
@@ -75,7 +75,7 @@ def main(argv: Sequence[str]) -> int:
 
 
 _Game = tuple[
-  Callable[[int], 'learning_figure.Curve'], Callable[[], float]
+  Callable[[int], 'curve.Curve'], Callable[[], float]
 ]  # How a seed learns, and how well what was made by hand does.
 
 
@@ -89,7 +89,7 @@ def _dance() -> _Game:
   numbers = learners.Numbers(updates=_or(_UPDATES, 1000))
   channel = signals.Channel(strokes)
 
-  def train(seed: int) -> learners.Curve:
+  def train(seed: int) -> 'curve.Curve':
     return learners.train(payloads, channel, numbers, seed)
 
   return train, lambda: by_hand.understood(payloads, channel)
@@ -118,15 +118,15 @@ def _or(flag: flags.FlagHolder[int | None], usual: int) -> int:
   return usual if flag.value is None else flag.value
 
 
-def _row(curve: 'learning_figure.Curve') -> tuple[str, ...]:
+def _row(each: 'curve.Curve') -> tuple[str, ...]:
   """The share that was understood, at three times."""
-  last = len(curve.right) - 1
-  shares = [curve.right[k] for k in (last // 10, last // 2, last)]
-  return (f'seed {curve.seed}', *(f'{share:.3f}' for share in shares))
+  last = len(each.right) - 1
+  shares = [each.right[k] for k in (last // 10, last // 2, last)]
+  return (f'seed {each.seed}', *(f'{share:.3f}' for share in shares))
 
 
 def _keep(
-  curves: Sequence['learning_figure.Curve'],
+  curves: Sequence['curve.Curve'],
   by_hand: float,
   folder: pathlib.Path,
 ) -> pathlib.Path:
@@ -137,22 +137,16 @@ def _keep(
     'by_hand': by_hand,
     'learners': [
       {
-        'seed': curve.seed,
-        'episodes': curve.episodes.astype(int).tolist(),
-        'understood': curve.right.tolist(),
-        **_language(curve),
+        'seed': each.seed,
+        'episodes': each.episodes.astype(int).tolist(),
+        'understood': each.right.tolist(),
+        **({} if each.means is None else {'heights': each.means.tolist()}),
       }
-      for curve in curves
+      for each in curves
     ],
   }
   text = json.dumps(data, indent=2) + '\n'
   return files.replace(folder / 'curves.json', text.encode())
-
-
-def _language(curve: 'learning_figure.Curve') -> dict[str, list[list[float]]]:
-  """What a pair has agreed to dance for each payload, where there is a pair."""
-  means = getattr(curve, 'means', None)
-  return {} if means is None else {'heights': means.tolist()}
 
 
 if __name__ == '__main__':

@@ -69,8 +69,9 @@ def test_a_blind_reader_learns_nothing() -> None:
 
 def test_bad_numbers_are_refused() -> None:
   for make, words in (
-    (lambda: readers.Numbers(rate=0), '`rate` must be 1e-06 to 1: got 0'),
-    (lambda: glimpses.Glimpses(error_m=1), '`error_m` must be 0 to 0.1'),
+    (lambda: readers.Numbers(batch=8.5), '`batch` must be an integer'),
+    (lambda: readers.Numbers(rate=0), '`rate` must be between'),
+    (lambda: glimpses.Glimpses(error_m=1), '`error_m` must be between'),
   ):
     with pytest.raises(needs.LearningError, match=words):
       make()

@@ -352,7 +352,7 @@ def nearest(env: rl.Read, heights: np.ndarray) -> str:
 
 
 def test_numbers_out_of_range_are_refused() -> None:
-  with pytest.raises(needs.LearningError, match='`lost_share` must be 0 to 1'):
+  with pytest.raises(needs.LearningError, match='`lost_share` must be between'):
     rl.Read(lost_share=1.5)
   with pytest.raises(needs.LearningError, match='`reward` must be one of'):
     rl.Read(reward='thick')

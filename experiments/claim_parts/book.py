@@ -1,8 +1,7 @@
 """Every claim as data: what is flown for it, and how that is compared.
 
 What documents say is not repeated here: it is read from them. Each command is
-a part of the one that stands above the table, small enough that all of them
-together take less than 30 minutes on two cores.
+a small part of the one that stands above the table.
 """
 
 from typing import Any

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 import pathlib
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -12,30 +12,16 @@ if TYPE_CHECKING:
   from matplotlib import axes
   from matplotlib import figure as figure_lib
 
+  from waggle_tasks.rl import curve
+
 _SIDE_IN = 4.5, 3.4
 
 
-class Curve(Protocol):
-  """How one seed learned; with `means`, (payloads, strokes), a language too."""
-
-  @property
-  def seed(self) -> int:
-    """Of all that was drawn."""
-    ...
-
-  @property
-  def episodes(self) -> np.ndarray:
-    """(N,) played before each point."""
-    ...
-
-  @property
-  def right(self) -> np.ndarray:
-    """(N,) share of payloads that were understood."""
-    ...
-
-
 def draw(
-  game: str, curves: Sequence[Curve], by_hand: float, folder: pathlib.Path
+  game: str,
+  curves: Sequence['curve.Curve'],
+  by_hand: float,
+  folder: pathlib.Path,
 ) -> list[pathlib.Path]:
   """Writes the curves into one picture, beside the language of the first seed.
 
@@ -58,7 +44,7 @@ def draw(
     if means is not None:
       _language(axes[1], curves[0].seed, means)
 
-  means = getattr(curves[0], 'means', None)
+  means = curves[0].means
   count = 1 if means is None else 2
   size = count * _SIDE_IN[0], _SIDE_IN[1]
   names = f'{game}.svg', f'{game}.png'
@@ -66,9 +52,11 @@ def draw(
   return figures.write(paint, folder, names, size, missing)
 
 
-def _curves(axis: 'axes.Axes', curves: Sequence[Curve], by_hand: float) -> None:
+def _curves(
+  axis: 'axes.Axes', curves: Sequence['curve.Curve'], by_hand: float
+) -> None:
   episodes = curves[0].episodes / 1000
-  shares = np.stack([curve.right for curve in curves])
+  shares = np.stack([each.right for each in curves])
   for share in shares:
     axis.plot(episodes, share, color=palette.BLUE, lw=0.6, alpha=0.5)
   axis.plot(

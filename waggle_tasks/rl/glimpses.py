@@ -11,7 +11,7 @@ import numpy as np
 
 from waggle_tasks import scenario
 from waggle_tasks.protocol import agreement as agreement_lib
-from waggle_tasks.protocol import controls, payload
+from waggle_tasks.protocol import checks, controls, payload
 from waggle_tasks.rl import needs
 
 RATE_HZ = 25.0
@@ -38,12 +38,8 @@ class Glimpses:
   lost_share: float = 0.02
 
   def __post_init__(self) -> None:
-    for name, most in (('error_m', 0.1), ('lost_share', 1.0)):
-      value = getattr(self, name)
-      if not 0 <= value <= most:
-        raise needs.LearningError(
-          f'`{name}` must be 0 to {most:g}: got {value!r}'
-        )
+    limits = {'error_m': (0, 0.1), 'lost_share': (0, 1)}
+    checks.settle_numbers(self, limits, needs.LearningError)
 
   @functools.cached_property
   def agreement(self) -> agreement_lib.Agreement:

@@ -10,7 +10,7 @@ import dataclasses
 
 import numpy as np
 
-from waggle_tasks.rl import adam, needs, signals
+from waggle_tasks.rl import adam, curve, needs, signals
 
 _LEFT_M = 0.03  # In half widths: who is farther from its first place dances.
 _EVERY = 20  # Updates between two points of a curve.
@@ -171,30 +171,12 @@ def _filled(tracks: np.ndarray) -> np.ndarray:
   return np.take_along_axis(tracks[:, :, 0], last, 1)
 
 
-@dataclasses.dataclass(frozen=True)
-class Curve:
-  """How a pair learned.
-
-  Attributes:
-    seed: Of all that was drawn.
-    episodes: (N,) played before each point.
-    right: (N,) share of payloads that were understood, of dances that are not
-      tried but chosen.
-    means: (payloads, strokes) the language, in the end.
-  """
-
-  seed: int
-  episodes: np.ndarray
-  right: np.ndarray
-  means: np.ndarray
-
-
 def train(
   payloads: int,
   channel: signals.Channel,
   numbers: Numbers = Numbers(),
   seed: int = 0,
-) -> Curve:
+) -> curve.Curve:
   """Lets a speaker and a listener learn from nothing.
 
   Args:
@@ -232,7 +214,7 @@ def train(
     )
   )
   episodes, right = np.array(points).T
-  return Curve(seed, episodes, right, speaker.means.copy())
+  return curve.Curve(seed, episodes, right, speaker.means.copy())
 
 
 def understood(

@@ -12,7 +12,8 @@ import math
 
 import numpy as np
 
-from waggle_tasks.rl import adam, glimpses, needs
+from waggle_tasks.protocol import checks
+from waggle_tasks.rl import adam, curve, glimpses, needs
 
 _LEFT = 0.2  # Of its longest way: who is farther from its first place dances.
 _LOOKS = 100  # Images of a dance that are looked at, about.
@@ -29,7 +30,8 @@ class Numbers:
     batch: Dances of an update, 8 to 65536.
     hidden: Cells of the layer, 4 to 4096.
     rate: Its step, 1e-6 to 1.
-    entropy: What a doubt is worth at first, 0 to 1; nothing in the end.
+    entropy: What a doubt is worth at first, 0 to 1; nothing in the end (see
+      `learners.Numbers`).
   """
 
   updates: int = 2500
@@ -39,15 +41,11 @@ class Numbers:
   entropy: float = 0.2
 
   def __post_init__(self) -> None:
-    for name, least, most in (
-      ('updates', 1, 10**6), ('batch', 8, 65536), ('hidden', 4, 4096),
-      ('rate', 1e-6, 1), ('entropy', 0, 1),
-    ):  # fmt: skip
-      value = getattr(self, name)
-      if not least <= value <= most:
-        raise needs.LearningError(
-          f'`{name}` must be {least:g} to {most:g}: got {value!r}'
-        )
+    limits = {
+      'updates': (1, 10**6), 'batch': (8, 65536), 'hidden': (4, 4096),
+      'rate': (1e-6, 1), 'entropy': (0, 1),
+    }  # fmt: skip
+    checks.settle_numbers(self, limits, needs.LearningError)
 
 
 class Reader:
@@ -132,26 +130,11 @@ class Reader:
     ])  # fmt: skip
 
 
-@dataclasses.dataclass(frozen=True)
-class Curve:
-  """How it learned.
-
-  Attributes:
-    seed: Of all that was drawn.
-    episodes: (N,) dances before each point.
-    right: (N,) share of payloads that were read, all bits of them.
-  """
-
-  seed: int
-  episodes: np.ndarray
-  right: np.ndarray
-
-
 def train(
   seen: glimpses.Glimpses = glimpses.Glimpses(),
   numbers: Numbers = Numbers(),
   seed: int = 0,
-) -> Curve:
+) -> curve.Curve:
   """Lets a reader learn from nothing.
 
   Args:
@@ -169,7 +152,7 @@ def train(
     reader.learn(seen.draw(values, rng), seen.bits(values), doubt, rng)
   points.append((numbers.updates * numbers.batch, share(reader, seen, rng)))
   episodes, right = np.array(points).T
-  return Curve(seed, episodes, right)
+  return curve.Curve(seed, episodes, right)
 
 
 def share(
